@@ -1,0 +1,119 @@
+//! Why a path is refused. Small and `Copy`, so that it travels over the wire; the host adds file, line and column.
+
+use core::fmt;
+
+use serde::{Deserialize, Serialize};
+
+/// What is wrong with a job, before anything moves.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum PathError {
+    /// The weight is outside 0..=1.
+    Weight {
+        /// What was given.
+        weight: f32,
+    },
+    /// The tolerance for gaps is not above zero.
+    Tolerance {
+        /// What was given, in mm.
+        tolerance: f32,
+    },
+    /// The feed is zero, negative or not a number.
+    Feed {
+        /// What was given, in mm/s.
+        feed: f32,
+    },
+    /// A ramp's length lambda is outside 0..=1.
+    RampLength {
+        /// What was given.
+        length: f32,
+    },
+    /// A ramp's factor f is outside 0 < f <= 1.
+    Reduction {
+        /// What was given.
+        factor: f32,
+    },
+    /// The ramps of a piece cover more than all of it.
+    Ramps {
+        /// lambda_0 + lambda_1, which may be at most 1.
+        sum: f32,
+    },
+    /// The interval of a piece is reversed, empty, or leaves 0..=1.
+    Interval {
+        /// The first parameter.
+        from: f32,
+        /// The last parameter.
+        to: f32,
+    },
+    /// A piece is shorter than a machine could resolve.
+    Length {
+        /// Its length, in mm.
+        length: f32,
+    },
+    /// 1 + kappa d vanishes inside a piece: the offset has a cusp there, and turns back.
+    Cusp,
+    /// An arc turns by nothing or by more than one turn.
+    Sweep {
+        /// What was given, in radians.
+        sweep: f32,
+    },
+    /// A number is infinite or not a number.
+    NotFinite,
+    /// A piece lies outside the range of machine coordinates.
+    Reach,
+    /// A piece does not begin where the one before it ended.
+    Gap {
+        /// The gap, in mm.
+        width: f32,
+    },
+    /// A closed path does not end where it starts.
+    Open {
+        /// The gap, in mm.
+        width: f32,
+    },
+    /// The exact last point is not where the last piece ends.
+    LastPoint {
+        /// The gap, in mm.
+        width: f32,
+    },
+    /// A piece follows the last one.
+    AfterLast,
+    /// The path has no pieces.
+    Empty,
+}
+
+impl fmt::Display for PathError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match *self {
+            Self::Weight { weight } => write!(f, "the weight is {weight}; it must be within 0..1"),
+            Self::Tolerance { tolerance } => write!(f, "the tolerance is {tolerance} mm; it must be above zero"),
+            Self::Feed { feed } => write!(f, "the feed is {feed} mm/s; it must be a number above zero"),
+            Self::RampLength { length } => write!(f, "a ramp takes {length} of its piece; it must be within 0..1"),
+            Self::Reduction { factor } => {
+                write!(f, "the reduction is {factor}; it must be above 0 and at most 1, or the corner is never reached")
+            }
+            Self::Ramps { sum } => {
+                write!(f, "the ramps of a piece cover {sum} of it; lambda at both ends may sum to at most 1")
+            }
+            Self::Interval { from, to } => {
+                write!(f, "the piece runs from {from} to {to}; it needs 0 <= from < to <= 1")
+            }
+            Self::Length { length } => {
+                write!(f, "the piece is {length} mm long, too short to be a motion; leave it out")
+            }
+            Self::Cusp => {
+                write!(f, "1 + kappa d vanishes inside the piece, where its offset has a cusp; trim it before")
+            }
+            Self::Sweep { sweep } => write!(f, "the arc turns by {sweep} rad; it must turn, and by one turn at most"),
+            Self::NotFinite => write!(f, "a number of the piece is infinite or not a number"),
+            Self::Reach => write!(f, "the piece leaves the range of machine coordinates, 4 m from the origin"),
+            Self::Gap { width } => write!(f, "the piece begins {width} mm away from where the one before it ends"),
+            Self::Open { width } => write!(f, "the path is called closed, but ends {width} mm away from its start"),
+            Self::LastPoint { width } => write!(f, "the last point is {width} mm away from where the last piece ends"),
+            Self::AfterLast => write!(f, "a piece follows the one that was called the last"),
+            Self::Empty => write!(f, "the path has no pieces"),
+        }
+    }
+}
+
+impl core::error::Error for PathError {}

@@ -1,0 +1,75 @@
+//! From pieces as they arrive to pieces that the tick may execute: every check of a path, in its order.
+//!
+//! The host runs the same loader over a whole job before it sends anything, the controller over each piece as it comes.
+
+use crate::active::ActivePiece;
+use crate::complex::Complex;
+use crate::error::PathError;
+use crate::fixed::Fixed;
+use crate::piece::{Header, Piece};
+use crate::real::Real;
+
+/// The checks of one path, piece after piece.
+#[derive(Clone, Copy, Debug)]
+pub struct Loader<T> {
+    header: Header<T>,
+    tick: T,
+    start: Option<[Fixed; 2]>,
+    end: [Fixed; 2],
+    finished: bool,
+}
+
+impl<T: Real> Loader<T> {
+    /// Begins a path; `tick` is the period in s. Errors: a weight outside 0..=1, a tolerance that is not above zero.
+    pub fn new(header: &Header<T>, tick: T) -> Result<Self, PathError> {
+        if !(header.weight >= T::ZERO && header.weight <= T::ONE) {
+            return Err(PathError::Weight { weight: header.weight.to_f32() });
+        }
+        if !(header.tolerance > T::ZERO && header.tolerance.is_finite()) {
+            return Err(PathError::Tolerance { tolerance: header.tolerance.to_f32() });
+        }
+        Ok(Self { header: *header, tick, start: None, end: [Fixed(0); 2], finished: false })
+    }
+
+    /// Checks the next piece of the path and prepares it. On an error nothing is taken over, and the path is at its end.
+    pub fn load(&mut self, piece: &Piece<T>) -> Result<ActivePiece<T>, PathError> {
+        if self.finished {
+            return Err(PathError::AfterLast);
+        }
+        let active = ActivePiece::activate(piece, self.header.weight, self.tick)?;
+        let start = active.place(active.point_and_rate(-T::HALF).0);
+        let end = active.place(active.point_and_rate(T::HALF).0);
+        if self.start.is_some()
+            && let Some(width) = self.gap(self.end, start)
+        {
+            return Err(PathError::Gap { width });
+        }
+        let first = *self.start.get_or_insert(start);
+        if let Some([x, y, _]) = piece.last {
+            if self.header.closed
+                && let Some(width) = self.gap(end, first)
+            {
+                return Err(PathError::Open { width });
+            }
+            if let Some(width) = self.gap(end, [x, y]) {
+                return Err(PathError::LastPoint { width });
+            }
+            self.finished = true;
+        }
+        self.end = end;
+        Ok(active)
+    }
+
+    /// Whether the last piece of the path has been loaded.
+    pub fn is_finished(&self) -> bool {
+        self.finished
+    }
+
+    /// The distance of two points in mm, where it is above the tolerance.
+    fn gap(&self, from: [Fixed; 2], to: [Fixed; 2]) -> Option<f32> {
+        let [x0, y0] = from;
+        let [x1, y1] = to;
+        let width = Complex::<T>::new(x1.minus(x0), y1.minus(y0)).norm();
+        (width > self.header.tolerance).then(|| width.to_f32())
+    }
+}

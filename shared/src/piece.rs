@@ -1,0 +1,88 @@
+//! A piece of a path as it travels: from the planner on the host, over the wire, to the loader on the controller.
+//!
+//! Anything may be wrong in it; [`crate::loader::Loader`] is the only way from here to an [`crate::active::ActivePiece`] that
+//! the tick executes. A piece stands in a frame of its own: parameter tau in -1/2..=1/2 over the piece's interval, coordinates
+//! relative to the fixed-point [`Piece::origin`] in the middle of it. In that frame the polynomial coefficients are as small
+//! as they can be, which is what keeps the f32 tick within nanometres of the curve.
+
+use serde::{Deserialize, Serialize};
+
+use crate::complex::Complex;
+use crate::feed::Ramp;
+use crate::fixed::{Fixed, Position};
+
+/// The curve of a piece in its local frame.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum Shape<T> {
+    /// A quintic PH curve at an offset distance.
+    Ph {
+        /// Coefficients of the preimage w = w_0 + w_1 tau + w_2 tau^2, in mm^(1/2); r' = w^2, and r(0) is the origin.
+        preimage: [Complex<T>; 3],
+        /// The signed offset distance d of equation (2) in mm, positive to the right of travel.
+        offset: T,
+    },
+    /// A straight line that the tool's centre follows.
+    Line {
+        /// From the first to the last point, in mm; the origin is half-way.
+        chord: Complex<T>,
+    },
+    /// A circular arc that the tool's centre follows.
+    Arc {
+        /// From the circle's centre to the middle of the arc, in mm; the origin is that middle.
+        radius: Complex<T>,
+        /// The signed angle from start to end in radians, positive anticlockwise; at most one turn.
+        sweep: T,
+        /// |1 + kappa d|: the centre's distance for a unit distance of the contact point. 1 on a fill arc, where the contact
+        /// point rests and the feed is the centre's.
+        ratio: T,
+    },
+}
+
+/// A segment, a parameter interval and an offset distance, with the feed along it: the unit that a tick executes.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Piece<T> {
+    /// Where the local frame stands on the machine.
+    pub origin: [Fixed; 2],
+    /// The curve.
+    pub shape: Shape<T>,
+    /// First and last parameter on the segment that this piece was cut from, within 0..=1; for reports.
+    pub interval: [T; 2],
+    /// The contact feed V in mm/s (the centre feed on a fill arc).
+    pub feed: T,
+    /// The ramp at the start; none where the path enters smoothly.
+    pub start: Option<Ramp<T>>,
+    /// The ramp at the end; none where the path leaves smoothly.
+    pub end: Option<Ramp<T>>,
+    /// On the last piece of a path, and only there: the exact point where the path ends.
+    pub last: Option<Position>,
+}
+
+/// What holds for all pieces of a job.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Header<T> {
+    /// The weight w of equation (18), 0..=1: 0 keeps the contact feed, 1 the centre feed.
+    pub weight: T,
+    /// How the tick integrates equation (21).
+    pub order: Order,
+    /// Whether the path ends where it starts.
+    pub closed: bool,
+    /// The widest gap between two pieces that is taken for none, in mm.
+    pub tolerance: T,
+}
+
+/// How a tick integrates equation (21).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum Order {
+    /// The first-order step of equation (22).
+    First,
+    /// With the Taylor term in dt^2.
+    Second,
+    /// With the Taylor terms in dt^2 and dt^3.
+    Third,
+    /// The integral itself, to rounding.
+    Exact,
+}

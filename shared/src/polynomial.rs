@@ -1,0 +1,114 @@
+//! Polynomials of a fixed degree, in powers of a parameter that stays within -1/2..=1/2.
+//!
+//! Powers, because Horner's scheme is the cheapest evaluation there is; a centred parameter, because it keeps the powers small:
+//! on a whole quintic the coefficients then are no larger than the curve, where powers of 0..=1 can be a hundred times larger.
+
+use core::ops::{Add, Mul};
+
+use crate::real::Real;
+
+/// c_0 + c_1 x + ... of degree N - 1, with real or complex coefficients.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Polynomial<C, const N: usize>(pub [C; N]);
+
+impl<C: Copy, const N: usize> Polynomial<C, N> {
+    /// The value at `x` by Horner's scheme: N - 1 multiplications and additions (twice that for complex coefficients).
+    /// Unrolled when the program is built; without coefficients it is `zero`.
+    #[inline(always)]
+    pub fn at<X: Copy, V: Copy + Add<C, Output = V> + Mul<X, Output = V>>(&self, x: X, zero: V) -> V {
+        let mut value = zero;
+        for &c in self.0.iter().rev() {
+            value = value * x + c;
+        }
+        value
+    }
+}
+
+/// What is known of a polynomial's sign on an interval.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Sign {
+    /// Above zero everywhere.
+    Positive,
+    /// Below zero everywhere.
+    Negative,
+    /// Zero somewhere, or too close to tell.
+    Vanishing,
+}
+
+/// The sign over the whole of -1/2..=1/2 of the polynomial with these Bernstein coefficients.
+///
+/// Coefficients of one sign prove it; otherwise the interval is halved by de Casteljau's scheme, down to 2^-[`HALVINGS`] of
+/// it. Load time: at most 2 [`HALVINGS`] subdivisions near one zero, and a polynomial has few.
+pub fn sign<T: Real, const N: usize>(bernstein: [T; N]) -> Sign {
+    let end = bernstein.first().copied().unwrap_or(T::ZERO);
+    if end == T::ZERO {
+        return Sign::Vanishing;
+    }
+    let flip = if end < T::ZERO { -T::ONE } else { T::ONE };
+    // Depth first; the halves still to be looked at, at most one a level.
+    let mut pending: heapless::Vec<([T; N], u32), { HALVINGS as usize + 1 }> = heapless::Vec::new();
+    let mut current = Some((bernstein.map(|b| b * flip), 0));
+    while let Some((mut part, depth)) = current {
+        if part.iter().all(|&b| b > T::ZERO) {
+            current = pending.pop();
+            continue;
+        }
+        let ends_hold = part.first().is_some_and(|&b| b > T::ZERO) && part.last().is_some_and(|&b| b > T::ZERO);
+        if depth >= HALVINGS || !ends_hold {
+            return Sign::Vanishing;
+        }
+        // de Casteljau at the middle: `part` becomes the right half, `left` collects the left one.
+        let mut left = part;
+        for k in 1..N {
+            for j in 0..N - k {
+                part[j] = (part[j] + part[j + 1]) * T::HALF;
+            }
+            left[k] = part[0];
+        }
+        if pending.push((part, depth + 1)).is_err() {
+            return Sign::Vanishing;
+        }
+        current = Some((left, depth + 1));
+    }
+    if end < T::ZERO { Sign::Negative } else { Sign::Positive }
+}
+
+/// How often [`sign`] halves the interval before it gives up.
+pub const HALVINGS: u32 = 16;
+
+/// The Bernstein coefficients on -1/2..=1/2 of the product of two polynomials that are given by theirs.
+pub fn bernstein_product<T: Real, const A: usize, const B: usize, const N: usize>(a: [T; A], b: [T; B]) -> [T; N] {
+    let mut product = [T::ZERO; N];
+    for (i, &x) in a.iter().enumerate() {
+        for (j, &y) in b.iter().enumerate() {
+            if let Some(slot) = product.get_mut(i + j) {
+                *slot += x * y * binomial::<T>(A - 1, i) * binomial::<T>(B - 1, j);
+            }
+        }
+    }
+    for (k, slot) in product.iter_mut().enumerate() {
+        *slot = *slot / binomial::<T>(N - 1, k);
+    }
+    product
+}
+
+/// n over k for the small degrees of this crate.
+pub(crate) fn binomial<T: Real>(n: usize, k: usize) -> T {
+    (1..=k).fold(T::ONE, |product, j| product * T::from_int((n + 1 - j) as i32) / T::from_int(j as i32))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_double_zero_and_a_near_miss_are_told_apart() {
+        // (x - 0.2)^2 on -1/2..=1/2, and the same raised by 1e-6.
+        let square = bernstein_product::<f64, 2, 2, 3>([-0.7, 0.3], [-0.7, 0.3]);
+        assert_eq!(sign(square), Sign::Vanishing);
+        assert_eq!(sign(square.map(|b| b + 1e-6)), Sign::Positive);
+        assert_eq!(sign(square.map(|b| -b - 1e-6)), Sign::Negative);
+        assert_eq!(sign([1.0, -1.0]), Sign::Vanishing);
+        assert_eq!(sign([1.0, -0.4, 1.0]), Sign::Positive);
+    }
+}
