@@ -1,0 +1,287 @@
+//! The host's half of the link: sends a job, whole and in order, over a line that loses things.
+//!
+//! It owns no port and no clock. The caller hands it what was received, sends what [`Sender::poll`] returns, and says what time it
+//! is, in microseconds from any start. The virtual board and a real serial port drive the same code.
+//!
+//! A job becomes a script of commands, numbered from 0: `Hello`, `Begin`, as many pieces as the queue holds, `Run`, and the pieces
+//! that are left. So a job that fits into the queue is refused as a whole before anything moves.
+
+use core::fmt;
+
+use super::frame::{Decoder, Frame, encode};
+use super::message::{Command, Refusal, Report, Telemetry, VERSION};
+use crate::piece::{Header, Piece};
+
+/// Commands in flight at a time, about half a kilobyte: less than the controller's buffer of received bytes.
+pub const WINDOW: u32 = 6;
+
+/// A command that was not acknowledged for so long is sent again, in microseconds. A full window takes 8 ms at 921 600 baud.
+pub const TIMEOUT_US: u64 = 50_000;
+
+/// A command is sent so many times before the sender gives up.
+pub const TRIES: u32 = 10;
+
+/// Sends one job. See the module.
+#[derive(Clone, Debug)]
+pub struct Sender<'a> {
+    header: &'a Header<f32>,
+    pieces: &'a [Piece<f32>],
+    decoder: Decoder,
+    /// The controller's queue, once it has said hello.
+    capacity: Option<u32>,
+    /// The first command that is not acknowledged.
+    acknowledged: u32,
+    /// The next command to send; goes back to `acknowledged` when something was lost.
+    next: u32,
+    /// One past the last command that was ever sent.
+    sent: u32,
+    /// Pieces that may be sent in all, as far as the controller has said.
+    allowed: u32,
+    /// The command that the sender went back to last; it goes back once, and then on time only.
+    back: Option<u32>,
+    tries: u32,
+    resent: u32,
+    heard_us: u64,
+    finished: bool,
+    error: Option<SenderError>,
+    last_refusal: Option<Refusal>,
+}
+
+/// What the controller said, as far as a caller is concerned.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Event {
+    /// The conversation has begun; the number is the capacity of the controller's queue.
+    Hello(u16),
+    /// How it goes.
+    Telemetry(Telemetry),
+    /// The job is done.
+    Finished {
+        /// Ticks of the job.
+        ticks: u32,
+        /// Time left in the last tick, in s.
+        residual: f32,
+        /// The hash of all setpoints.
+        hash: u64,
+    },
+    /// The job was refused; [`Sender::error`] says why.
+    Failed(SenderError),
+}
+
+/// Why a job cannot be sent.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum SenderError {
+    /// The controller refused it.
+    Refused {
+        /// The piece that it refused, counted from 0; none if it was not a piece.
+        piece: Option<u32>,
+        /// Why.
+        reason: Refusal,
+    },
+    /// No frame came through in [`TRIES`] tries.
+    Lost {
+        /// What the controller said of the frames, if it said anything.
+        reason: Option<Refusal>,
+    },
+}
+
+impl fmt::Display for SenderError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Refused { piece: Some(piece), reason } => write!(f, "the controller refused piece {piece}: {reason}"),
+            Self::Refused { piece: None, reason } => write!(f, "the controller refused the job: {reason}"),
+            Self::Lost { reason: Some(reason) } => write!(f, "no frame came through in {TRIES} tries: {reason}"),
+            Self::Lost { reason: None } => write!(f, "the controller does not answer; check the port and its power"),
+        }
+    }
+}
+
+impl core::error::Error for SenderError {}
+
+impl<'a> Sender<'a> {
+    /// A sender of the job of `header` and `pieces`.
+    pub fn new(header: &'a Header<f32>, pieces: &'a [Piece<f32>]) -> Self {
+        Self {
+            header,
+            pieces,
+            decoder: Decoder::new(),
+            capacity: None,
+            acknowledged: 0,
+            next: 0,
+            sent: 0,
+            allowed: 0,
+            back: None,
+            tries: 0,
+            resent: 0,
+            heard_us: 0,
+            finished: false,
+            error: None,
+            last_refusal: None,
+        }
+    }
+
+    /// The next frame to put on the wire, if there is one now. Call until there is none.
+    pub fn poll(&mut self, now_us: u64) -> Option<Frame> {
+        if self.finished || self.error.is_some() {
+            return None;
+        }
+        if self.sent > 0 && now_us.saturating_sub(self.heard_us) > TIMEOUT_US {
+            self.heard_us = now_us;
+            self.tries += 1;
+            if self.tries >= TRIES {
+                self.error = Some(SenderError::Lost { reason: self.last_refusal });
+                return None;
+            }
+            if self.acknowledged == self.sent {
+                // Everything has arrived, or there is no room: a lost report is all that can be missing.
+                return encode(self.next as u16, &Command::Status);
+            }
+            self.go_back();
+        }
+        let command = self.command(self.next)?;
+        if self.next - self.acknowledged >= WINDOW || self.pieces_before(self.next + 1) > self.allowed {
+            return None;
+        }
+        if self.sent == 0 {
+            self.heard_us = now_us;
+        }
+        let frame = encode(self.next as u16, &command);
+        self.next += 1;
+        self.sent = self.sent.max(self.next);
+        frame
+    }
+
+    /// Takes one received byte.
+    pub fn receive(&mut self, now_us: u64, byte: u8) -> Option<Event> {
+        // A broken report is made good by the next one, or by asking for the status.
+        let (_, report) = self.decoder.push::<Report>(byte)?.ok()?;
+        match report {
+            Report::Hello { version, capacity } => {
+                if version != VERSION {
+                    return Some(self.fail(None, Refusal::Version { version }));
+                }
+                self.capacity = Some(u32::from(capacity).max(1));
+                self.advance(now_us, 1, capacity);
+                Some(Event::Hello(capacity))
+            }
+            Report::Ack { next, room } => {
+                self.advance(now_us, next, room);
+                None
+            }
+            Report::Refused { sequence, reason: Refusal::Link(link) } => {
+                self.last_refusal = Some(Refusal::Link(link));
+                self.advance(now_us, sequence, 0);
+                if self.back != Some(self.acknowledged) {
+                    self.go_back();
+                }
+                None
+            }
+            Report::Refused { sequence, reason } => Some(self.fail(self.piece_of(sequence), reason)),
+            Report::Telemetry(telemetry) => {
+                // The controller lives. Whether it still misses something is for the acknowledgements to say.
+                if self.acknowledged == self.sent {
+                    self.heard(now_us);
+                }
+                Some(Event::Telemetry(telemetry))
+            }
+            Report::Finished { ticks, residual, hash } => {
+                self.finished = true;
+                Some(Event::Finished { ticks, residual, hash })
+            }
+        }
+    }
+
+    /// The frame that stops the motion at once.
+    pub fn abort(&self) -> Option<Frame> {
+        encode(self.next as u16, &Command::Abort)
+    }
+
+    /// Why the job failed, if it did.
+    pub fn error(&self) -> Option<SenderError> {
+        self.error
+    }
+
+    /// Whether the controller has reported the end of the job.
+    pub fn is_finished(&self) -> bool {
+        self.finished
+    }
+
+    /// Pieces that the controller has taken.
+    pub fn acknowledged_pieces(&self) -> u32 {
+        self.pieces_before(self.acknowledged)
+    }
+
+    /// Commands that were sent more than once.
+    pub fn resent(&self) -> u32 {
+        self.resent
+    }
+
+    fn heard(&mut self, now_us: u64) {
+        self.heard_us = now_us;
+        self.tries = 0;
+    }
+
+    /// Everything before `sequence` has arrived, and `room` more pieces may follow.
+    fn advance(&mut self, now_us: u64, sequence: u16, room: u16) {
+        if self.capacity.is_none() {
+            // Until the controller has said hello, it may be counting from an earlier conversation.
+            return;
+        }
+        let progress = u32::from(sequence.wrapping_sub(self.acknowledged as u16));
+        if progress > self.sent - self.acknowledged {
+            return;
+        }
+        self.acknowledged += progress;
+        self.next = self.next.max(self.acknowledged);
+        self.allowed = self.allowed.max(self.pieces_before(self.acknowledged) + u32::from(room));
+        if progress > 0 || self.acknowledged == self.sent {
+            self.heard(now_us);
+        }
+    }
+
+    fn go_back(&mut self) {
+        self.back = Some(self.acknowledged);
+        self.resent += self.next - self.acknowledged;
+        self.next = self.acknowledged;
+    }
+
+    fn fail(&mut self, piece: Option<u32>, reason: Refusal) -> Event {
+        let error = *self.error.get_or_insert(SenderError::Refused { piece, reason });
+        Event::Failed(error)
+    }
+
+    /// Where `Run` stands in the script: behind as many pieces as the queue holds.
+    fn run_index(&self) -> u32 {
+        self.capacity.unwrap_or(0).min(self.pieces.len() as u32) + 2
+    }
+
+    /// The command at `index` of the script; none at its end, and none behind `Hello` before that was answered.
+    fn command(&self, index: u32) -> Option<Command> {
+        if index == 0 {
+            return Some(Command::Hello { version: VERSION });
+        }
+        self.capacity?;
+        let run = self.run_index();
+        match index {
+            1 => Some(Command::Begin(*self.header)),
+            _ if index == run => Some(Command::Run),
+            _ => self.pieces.get(self.pieces_before(index) as usize).copied().map(Command::Piece),
+        }
+    }
+
+    /// How many of the commands before `index` are pieces.
+    fn pieces_before(&self, index: u32) -> u32 {
+        let others = if index > self.run_index() { 3 } else { 2 };
+        index.saturating_sub(others).min(self.pieces.len() as u32)
+    }
+
+    /// The piece that travels under `sequence`.
+    fn piece_of(&self, sequence: u16) -> Option<u32> {
+        let index =
+            self.acknowledged.wrapping_add_signed(i32::from(sequence.wrapping_sub(self.acknowledged as u16) as i16));
+        matches!(self.command(index), Some(Command::Piece(_))).then(|| self.pieces_before(index))
+    }
+}
+
+#[cfg(test)]
+#[path = "sender_tests.rs"]
+mod tests;
