@@ -1,0 +1,121 @@
+//! What a tick does, without the hardware: the path's executor and the servo axes.
+
+use heapless::spsc::{Consumer, Queue};
+use shared::active::ActivePiece;
+use shared::executor::{Executor, State};
+use shared::fixed::{Fixed, Position};
+use shared::hash::SetpointHash;
+use shared::piece::Order;
+use shared::servo::{Servo, ServoState};
+
+use crate::axes::{AXES, settings};
+use crate::mailbox::{Mailbox, Snapshot};
+
+/// Length of the queue of pieces; it holds one less. A power of two.
+pub const PIECES: usize = 64;
+
+/// Length of the queue of directives; it holds one less.
+pub const DIRECTIVES: usize = 4;
+
+/// Validated pieces on their way from the link to the tick.
+pub type PieceQueue = Queue<ActivePiece<f32>, PIECES>;
+
+/// Directives on their way from the link to the tick.
+pub type Directives = Queue<Directive, DIRECTIVES>;
+
+/// What the link asks of the tick.
+#[derive(Clone, Copy, Debug)]
+pub enum Directive {
+    /// Begin the path whose pieces stand in the queue.
+    Start(Order),
+    /// Stay where you are, and forget the pieces in the queue.
+    Stop,
+}
+
+/// The state of everything that moves.
+pub struct Control {
+    pieces: Consumer<'static, ActivePiece<f32>>,
+    directives: Consumer<'static, Directive>,
+    executor: Executor<f32>,
+    servos: [(Servo<f32>, ServoState<f32>); AXES],
+    hash: SetpointHash,
+    ticks: u32,
+    commands: [f32; AXES],
+}
+
+impl Control {
+    /// At rest at the origin, with the encoders at zero.
+    pub fn new(pieces: Consumer<'static, ActivePiece<f32>>, directives: Consumer<'static, Directive>) -> Self {
+        Self {
+            pieces,
+            directives,
+            executor: Executor::new(shared::TICK, [Fixed(0); 3]),
+            servos: settings().map(|servo| (servo, servo.at_rest(Fixed(0), 0))),
+            hash: SetpointHash::new(),
+            ticks: 0,
+            commands: [0.0; AXES],
+        }
+    }
+
+    /// One tick: from the encoders' counts to the commands of the drives. `stopped` gives up every motion.
+    #[inline(always)]
+    pub fn tick(&mut self, counts: [i32; AXES], stopped: bool) -> [f32; AXES] {
+        match self.directives.dequeue() {
+            None if !stopped => {}
+            Some(Directive::Start(order)) if !stopped => self.start(order),
+            _ => self.stop(),
+        }
+        let moving = matches!(self.executor.state(), State::Run | State::Starved);
+        let setpoint = self.executor.tick(&mut self.pieces);
+        if moving {
+            self.hash.add(setpoint);
+            self.ticks = self.ticks.wrapping_add(1);
+        }
+        self.commands = self.command(setpoint, counts);
+        self.commands
+    }
+
+    #[inline(always)]
+    fn command(&mut self, setpoint: Position, counts: [i32; AXES]) -> [f32; AXES] {
+        let mut commands = [0.0; AXES];
+        let inputs = setpoint.into_iter().zip(counts);
+        for ((command, (servo, state)), (setpoint, count)) in commands.iter_mut().zip(&mut self.servos).zip(inputs) {
+            *command = servo.step(state, setpoint, count);
+        }
+        commands
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn start(&mut self, order: Order) {
+        self.executor.start(order);
+        self.hash = SetpointHash::new();
+        self.ticks = 0;
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn stop(&mut self) {
+        self.executor.abort();
+        for _ in 0..PIECES {
+            if self.pieces.dequeue().is_none() {
+                break;
+            }
+        }
+    }
+
+    /// Leaves what a reporter wants to know; `cycles` is how long the tick took.
+    #[inline(always)]
+    pub fn publish(&self, mailbox: &Mailbox, cycles: u32) {
+        mailbox.publish(&Snapshot {
+            state: self.executor.state() as u32,
+            ticks: self.ticks,
+            pieces: self.executor.place().map_or(0, |place| place.piece.wrapping_add(1)),
+            setpoint: self.executor.setpoint(),
+            hash: self.hash.value(),
+            residual: self.executor.spare_time(),
+            commands: self.commands,
+            cycles,
+        });
+    }
+}
