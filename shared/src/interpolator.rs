@@ -105,7 +105,6 @@ enum Stretch<T> {
 fn smooth<T: Real>(piece: &ActivePiece<T>, tau: T, room: T, time: T) -> Stretch<T> {
     let duration =
         |step: T| T::GAUSS.iter().fold(T::ZERO, |sum, &(x, weight)| sum + weight / piece.rate(tau + x * step)) * step;
-    let enough = T::lit(4.0) * T::ROUNDOFF * time;
     let (mut low, mut high) = (T::ZERO, room);
     let mut step = piece.rate(tau) * time;
     let mut across_is_known = false;
@@ -129,10 +128,12 @@ fn smooth<T: Real>(piece: &ActivePiece<T>, tau: T, room: T, time: T) -> Stretch<
         } else {
             low = step;
         }
-        if late.abs() <= enough {
+        step -= late * piece.rate(tau + step);
+        // Newton's method squares the relative error: once the square is a roundoff, this was the last correction. To ask for
+        // less than the rounding of `duration` would never end.
+        if late * late <= T::ROUNDOFF * (time * time) {
             break;
         }
-        step -= late * piece.rate(tau + step);
     }
-    Stretch::Within(step)
+    Stretch::Within(step.most(T::ZERO).least(room))
 }
