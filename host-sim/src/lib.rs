@@ -1,1 +1,25 @@
-//! placeholder
+//! Prepares jobs for the Hodograph motion controller, simulates them with the controller's own tick, measures and reports.
+//!
+//! The layers, each knowing only those before it:
+//!
+//! | module | what |
+//! | --- | --- |
+//! | [`input`] | files as they are read, and errors that name file, line and column |
+//! | [`job`] | what a person wants: contour, offset, feed; the contour form |
+//! | [`path`] | the exact curves of the tool's centre in f64, and the pieces that a controller gets of them |
+//! | [`prepare`] | a checked job as bytes, for a sender |
+//! | [`plant`] | motors, screws, friction, encoders: what hangs on the axes |
+//! | [`simulate`] | the tick of `shared` over a path, with or without a plant |
+//! | [`measure`] | contour error and exact time, independent of the kernel |
+//! | [`reproduce`] | published experiments beside their published figures |
+//! | [`report`] | pictures and tables of results in one HTML file |
+
+pub mod input;
+pub mod job;
+pub mod measure;
+pub mod path;
+pub mod plant;
+pub mod prepare;
+pub mod report;
+pub mod reproduce;
+pub mod simulate;

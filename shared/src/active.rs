@@ -198,6 +198,19 @@ impl<T: Real> ActivePiece<T> {
         }
     }
 
+    /// The speed of the centre for a unit rate, |dr_d/d(tau)| in mm: times [`ActivePiece::rate`] the centre feed V_d of (15).
+    /// Not for the tick: it takes a root.
+    pub fn centre_speed(&self, tau: T) -> T {
+        match &self.curve {
+            Curve::Ph(ph) => {
+                let at = ph.local(tau);
+                at.g / at.sigma
+            }
+            Curve::Line { chord, .. } => chord.norm(),
+            Curve::Arc { radius, sweep, .. } => radius.norm() * sweep.abs(),
+        }
+    }
+
     /// The parameters tau between which the rate is one smooth function.
     pub fn knots(&self) -> [T; 2] {
         self.knots
@@ -245,19 +258,18 @@ impl<T: Real> ActivePiece<T> {
         (low + high) * T::HALF
     }
 
-    /// As many as keep a substep to a quarter of a ramp and an eighth of a piece, where the Gauss rule is exact to rounding;
-    /// 8 at most, so that the tick stays bounded.
+    /// As many as keep a substep to a quarter of a ramp and a sixteenth of a piece at its fastest, where the Gauss rule is exact to
+    /// rounding; 8 at most, so that the tick stays bounded.
     fn choose_substeps(&self, tick: T) -> (u32, T) {
-        let fastest = (-2..=2).fold(T::ZERO, |most: T, k| {
-            let tau = T::from_int(k) * T::lit(0.25);
-            let base = match &self.curve {
-                Curve::Ph(ph) => ph.base(tau),
-                Curve::Line { base, .. } | Curve::Arc { base, .. } => *base,
-            };
-            most.most(base)
-        });
+        /// Half as many parts as the rate is looked for in: a curve that nearly stands still somewhere has a sharp peak there.
+        const HALF_PARTS: i32 = 32;
+        let fastest = match &self.curve {
+            Curve::Ph(ph) => (-HALF_PARTS..=HALF_PARTS)
+                .fold(T::ZERO, |most: T, k| most.most(ph.base(T::from_int(k) * T::lit(0.5 / f64::from(HALF_PARTS))))),
+            Curve::Line { base, .. } | Curve::Arc { base, .. } => *base,
+        };
         let share = fastest * tick;
-        let wanted = share * T::lit(8.0).most(T::lit(4.0) / self.law.shortest_ramp());
+        let wanted = share * T::lit(16.0).most(T::lit(4.0) / self.law.shortest_ramp());
         let count = (wanted + T::HALF).least(T::lit(8.0)).to_int().clamp(1, 8);
         (count.unsigned_abs(), T::ONE / T::from_int(count))
     }

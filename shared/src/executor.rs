@@ -179,6 +179,16 @@ impl<T: Real> Executor<T> {
         Some(Place { piece, tau: self.tau.value(), rate: self.rate, point: self.point })
     }
 
+    /// The centre feed V_d at which the last tick ended, in mm/s. Not for the tick.
+    pub fn centre_feed(&self) -> T {
+        self.active.map_or(T::ZERO, |piece| piece.centre_speed(self.tau.value()) * self.rate)
+    }
+
+    /// The arc-length fraction u on the piece at which the last tick ended.
+    pub fn fraction(&self) -> T {
+        self.active.map_or(T::ZERO, |piece| piece.fraction(self.tau.value()))
+    }
+
     /// The setpoint of the last tick.
     pub fn setpoint(&self) -> Position {
         self.setpoint

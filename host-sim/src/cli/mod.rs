@@ -1,0 +1,104 @@
+//! The command line: one module a verb, each a thin reader of a result that the library computes.
+
+mod motion;
+mod output;
+mod prepare;
+mod reproduce;
+mod simulate;
+
+use std::fmt;
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+use host_sim::input::{InputError, Source};
+use host_sim::plant::Plant;
+use indicatif::{ProgressBar, ProgressStyle};
+
+/// The whole command line.
+#[derive(Parser)]
+#[command(
+    name = "hodograph",
+    version,
+    about = "A motion controller that follows the curve you drew: prepares and simulates its jobs"
+)]
+pub struct Cli {
+    #[command(subcommand)]
+    verb: Verb,
+}
+
+#[derive(Subcommand)]
+enum Verb {
+    Simulate(simulate::Simulate),
+    Reproduce(reproduce::Reproduce),
+    Prepare(prepare::Prepare),
+}
+
+impl Cli {
+    /// Runs the verb.
+    pub fn run(self) -> Result<(), Failure> {
+        match self.verb {
+            Verb::Simulate(verb) => verb.run(),
+            Verb::Reproduce(verb) => verb.run(),
+            Verb::Prepare(verb) => verb.run(),
+        }
+    }
+}
+
+/// Why a command ends without its result.
+#[derive(Debug)]
+pub enum Failure {
+    /// Something in a file or an option cannot be used: status 2.
+    Input(InputError),
+    /// The run itself failed: status 1.
+    Run(String),
+}
+
+impl Failure {
+    /// The exit status that says so.
+    pub fn code(&self) -> ExitCode {
+        match self {
+            Self::Input(_) => ExitCode::from(2),
+            Self::Run(_) => ExitCode::FAILURE,
+        }
+    }
+}
+
+impl fmt::Display for Failure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Input(error) => write!(f, "{error}"),
+            Self::Run(message) => write!(f, "{message}"),
+        }
+    }
+}
+
+impl From<InputError> for Failure {
+    fn from(error: InputError) -> Self {
+        Self::Input(error)
+    }
+}
+
+/// Reads a plant from TOML. Errors name file, line and column.
+fn read_plant(name: &str) -> Result<Plant, InputError> {
+    let source = Source::read(name)?;
+    Plant::from_toml(&source.text, f64::from(shared::TICK)).map_err(|error| InputError {
+        place: format!("{name}:{error}"),
+        position: None,
+        message: String::new(),
+    })
+}
+
+/// A bar on standard error over `seconds` of simulated time; hidden where nobody looks.
+fn progress(seconds: f64) -> ProgressBar {
+    progress_of(seconds as u64, "{pos} of {len} s simulated")
+}
+
+/// A bar over `length` steps with this text.
+fn progress_of(length: u64, text: &str) -> ProgressBar {
+    let bar = ProgressBar::new(length);
+    // The template is a constant of the source; a bar without it would do as well.
+    if let Ok(style) = ProgressStyle::with_template(&format!("{{bar:40}} {text}")) {
+        bar.set_style(style);
+    }
+    bar
+}

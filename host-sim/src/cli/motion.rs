@@ -1,0 +1,62 @@
+//! Options that change the motion, the same for every verb that has one.
+
+use clap::{Args, ValueEnum};
+use host_sim::input::InputError;
+use host_sim::job::{FeedOverride, Job};
+use host_sim::path::Path;
+use shared::piece::Order;
+
+/// A job and what the command line says of its motion.
+#[derive(Args)]
+pub struct Motion {
+    /// The job: a contour in TOML
+    pub job: String,
+    /// w: 0 keeps the feed of the contact point, 1 that of the tool's centre
+    #[arg(long, value_name = "W", allow_negative_numbers = true)]
+    weight: Option<f64>,
+    /// f: what is left of the feed at a corner
+    #[arg(long, value_name = "F", allow_negative_numbers = true)]
+    reduction: Option<f64>,
+    /// lambda: the part of a piece on which the feed changes at a corner
+    #[arg(long, value_name = "LAMBDA", allow_negative_numbers = true)]
+    ramp: Option<f64>,
+    /// V in the job's units a minute
+    #[arg(long, value_name = "V", allow_negative_numbers = true)]
+    feed: Option<f64>,
+    /// How a tick integrates the feed law
+    #[arg(long, value_enum, default_value_t = OrderName::First)]
+    order: OrderName,
+}
+
+/// The interpolator's order as it is written.
+#[derive(Clone, Copy, ValueEnum)]
+pub enum OrderName {
+    /// Equation (22)
+    #[value(name = "1")]
+    First,
+    /// With the term in dt^2
+    #[value(name = "2")]
+    Second,
+    /// With the term in dt^3
+    #[value(name = "3")]
+    Third,
+    /// The integral to rounding
+    #[value(name = "exact")]
+    Exact,
+}
+
+impl Motion {
+    /// Reads the job and makes its path.
+    pub fn path(&self) -> Result<(Job, Path), InputError> {
+        let by = FeedOverride { rate: self.feed, weight: self.weight, reduction: self.reduction, ramp: self.ramp };
+        let job = Job::read(&self.job)?.with_feed(by)?;
+        let order = match self.order {
+            OrderName::First => Order::First,
+            OrderName::Second => Order::Second,
+            OrderName::Third => Order::Third,
+            OrderName::Exact => Order::Exact,
+        };
+        let path = Path::new(&job, order)?;
+        Ok((job, path))
+    }
+}

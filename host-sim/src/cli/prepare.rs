@@ -1,0 +1,30 @@
+//! `hodograph prepare`: the pieces of a job as the controller gets them, for whoever sends them.
+
+use std::io::Write;
+
+use clap::Args;
+use host_sim::prepare::prepare;
+
+use super::Failure;
+use super::motion::Motion;
+use super::output::{create, failed};
+
+/// Write a job's pieces in the form in which they go over the link
+#[derive(Args)]
+#[command(after_help = "Example:\n  hodograph prepare examples/farouki2018.toml -o farouki2018.job")]
+pub struct Prepare {
+    #[command(flatten)]
+    motion: Motion,
+    /// The file to write
+    #[arg(short, long, value_name = "FILE")]
+    output: String,
+}
+
+impl Prepare {
+    /// Reads, checks and writes.
+    pub fn run(self) -> Result<(), Failure> {
+        let (_, path) = self.motion.path()?;
+        let bytes = prepare(&path).map_err(|error| failed(&self.output, error))?;
+        create(&self.output)?.write_all(&bytes).map_err(|e| failed(&self.output, e))
+    }
+}

@@ -1,0 +1,146 @@
+//! `hodograph simulate`: one job through the tick and a plant.
+
+use std::io::Write;
+
+use clap::Args;
+use host_sim::job::{Job, Units};
+use host_sim::path::Path;
+use host_sim::plant::Plant;
+use host_sim::report;
+use host_sim::simulate::{Outcome, SETTLING_TICKS, Sample, drive, ideal, simulate};
+
+use super::Failure;
+use super::motion::Motion;
+use super::output::{create, failed, json};
+
+/// Run a job through the controller's tick, on a simulated machine or an ideal one
+#[derive(Args)]
+#[command(
+    after_help = "Example:\n  hodograph simulate examples/farouki2018.toml --weight 0.5 --plant examples/farouki2018-mill.toml --report out.html"
+)]
+pub struct Simulate {
+    #[command(flatten)]
+    motion: Motion,
+    /// The machine, in TOML; without one the axes are where their setpoints are
+    #[arg(long, value_name = "FILE")]
+    plant: Option<String>,
+    /// Write the result as JSON; `-` is standard output
+    #[arg(long, value_name = "FILE")]
+    json: Option<String>,
+    /// Write every tick: place, feed, commanded and actual position, contour error
+    #[arg(long, value_name = "FILE.csv")]
+    trace: Option<String>,
+    /// Write the integers that every tick put out
+    #[arg(long, value_name = "FILE.csv")]
+    setpoints: Option<String>,
+    /// Write pictures and tables as one HTML file
+    #[arg(long, value_name = "FILE.html")]
+    report: Option<String>,
+}
+
+impl Simulate {
+    /// Simulates, and writes what was asked for.
+    pub fn run(self) -> Result<(), Failure> {
+        let (job, path) = self.motion.path()?;
+        let plant = self.plant.as_deref().map(super::read_plant).transpose()?;
+        let (outcome, samples) = self.simulate(&job, &path, plant)?;
+        if let Some(name) = &self.report {
+            let html = report::simulation(&job, &path, &outcome, &samples).map_err(|error| failed(name, error))?;
+            create(name)?.write_all(html.as_bytes()).map_err(|e| failed(name, e))?;
+        }
+        if let Some(name) = &self.json {
+            json(name, &outcome)?;
+        }
+        if self.json.as_deref() != Some("-") {
+            print(&outcome);
+        }
+        Ok(())
+    }
+
+    fn simulate(&self, job: &Job, path: &Path, plant: Option<Plant>) -> Result<(Outcome, Vec<Sample>), Failure> {
+        let mut trace = self.trace.as_deref().map(create).transpose()?;
+        let mut setpoints = self.setpoints.as_deref().map(create).transpose()?;
+        if let Some(out) = &mut trace {
+            writeln!(out, "tick,piece,xi,u,feed,x_cmd,y_cmd,z_cmd,x_act,y_act,z_act,contour_error")
+                .map_err(|e| failed("--trace", e))?;
+        }
+        if let Some(out) = &mut setpoints {
+            writeln!(out, "tick,x,y,z").map_err(|e| failed("--setpoints", e))?;
+        }
+        let bar = super::progress(host_sim::measure::exact_time(path));
+        let mut samples = Vec::new();
+        let mut written = Ok(());
+        let keep = self.report.is_some();
+        let look = |sample: &Sample| {
+            if sample.tick % 1024 == 0 {
+                bar.set_position(sample.tick / 1024);
+            }
+            if keep {
+                samples.push(*sample);
+            }
+            if written.is_ok() {
+                written = write_sample(&mut trace, &mut setpoints, sample, job.units);
+            }
+        };
+        let outcome = match plant {
+            None => simulate(path, job.units, 0, ideal, look),
+            Some(mut plant) => {
+                plant.rest_at(path.start());
+                simulate(path, job.units, SETTLING_TICKS, drive(&mut plant), look)
+            }
+        };
+        bar.finish_and_clear();
+        for out in [trace.as_mut(), setpoints.as_mut()].into_iter().flatten() {
+            written = written.and_then(|()| out.flush());
+        }
+        written.map_err(|e| failed("--trace or --setpoints", e))?;
+        let outcome = outcome.ok_or_else(|| Failure::Run(format!("{}: the path does not end", job.name())))?;
+        Ok((outcome, samples))
+    }
+}
+
+type Csv = Option<Box<dyn Write>>;
+
+fn write_sample(trace: &mut Csv, setpoints: &mut Csv, sample: &Sample, units: Units) -> std::io::Result<()> {
+    let [x, y, z] = sample.commanded;
+    if let Some(out) = setpoints {
+        writeln!(out, "{},{},{},{}", sample.tick, x.0, y.0, z.0)?;
+    }
+    if let Some(out) = trace {
+        let length = |mm: f64| mm / units.mm();
+        writeln!(
+            out,
+            "{},{},{},{},{},{},{},{},{},{},{},{}",
+            sample.tick,
+            sample.piece,
+            sample.xi,
+            sample.u,
+            length(sample.feed),
+            length(x.to_mm()),
+            length(y.to_mm()),
+            length(z.to_mm()),
+            length(sample.actual.re),
+            length(sample.actual.im),
+            length(z.to_mm()),
+            length(sample.contour_error),
+        )?;
+    }
+    Ok(())
+}
+
+fn print(outcome: &Outcome) {
+    let unit = outcome.units.short();
+    println!("time                {:>12.3} s  ({} ticks)", outcome.time_s, outcome.ticks);
+    println!("contact length      {:>12.4} {unit}", outcome.contact_length);
+    println!("centre length       {:>12.4} {unit}", outcome.centre_length);
+    println!(
+        "largest feed        {:>12.1} {unit}/min commanded, {:.1} measured",
+        outcome.max_feed, outcome.max_measured_feed
+    );
+    println!("largest acceleration{:>12.1} {unit}/s2", outcome.max_acceleration);
+    println!(
+        "contour error       {:>12.6} {unit} at most, {:.6} rms",
+        outcome.max_contour_error, outcome.rms_contour_error
+    );
+    println!("setpoints           {}", outcome.setpoint_hash);
+}

@@ -1,0 +1,266 @@
+//! Reads the contour form (design section 6) and checks it, sentence by sentence.
+
+use shared::complex::Complex;
+use shared::curve::{Arc, Curve as _, Line, PhQuintic, Segment, hermite};
+
+use super::schema::{Point, RawJob, RawPiece, RawSegment};
+use super::{Along, Corner, FeedWish, GivenPiece, Job, Places, Units};
+use super::{check_ramp, check_rate, check_reduction, check_weight};
+use crate::input::{InputError, Source};
+
+/// A gap of this many mm is none unless the file says otherwise: what four decimals of a millimetre may leave.
+const TOLERANCE_MM: f64 = 1e-3;
+
+/// Tangents that differ by less than this angle meet smoothly.
+const SMOOTH_RAD: f64 = 1e-6;
+
+pub(super) fn read(source: Source) -> Result<Job, InputError> {
+    let raw: RawJob = toml::from_str(&source.text)
+        .map_err(|error| source.error(&error.span().unwrap_or(0..0), first_line(error.message())))?;
+    if let Some(rest) = &raw.rest
+        && *rest.get_ref()
+    {
+        return Err(source.error(&rest.span(), "starting from rest is not available yet; leave `rest` out or false"));
+    }
+    let mm = raw.units.mm();
+    let tolerance = match &raw.tolerance {
+        None => TOLERANCE_MM,
+        Some(value) if *value.get_ref() > 0.0 && value.get_ref().is_finite() => value.get_ref() * mm,
+        Some(value) => return Err(source.error(&value.span(), "the tolerance must be a number above zero")),
+    };
+    let offset = match &raw.offset {
+        None => 0.0,
+        Some(offset) if offset.distance.get_ref().is_finite() => offset.distance.get_ref() * mm,
+        Some(offset) => return Err(source.error(&offset.distance.span(), "the offset distance is not a number")),
+    };
+    let feed = read_feed(&source, &raw)?;
+    let segments = read_segments(&source, &raw, tolerance)?;
+    let pieces = read_pieces(&source, &raw, &segments, offset)?;
+    let places = Places {
+        segments: raw.segment.iter().map(|s| s.span()).collect(),
+        pieces: raw.piece.iter().map(|p| p.span()).collect(),
+        source,
+    };
+    Ok(Job { units: raw.units, closed: *raw.closed.get_ref(), tolerance, offset, feed, segments, pieces, places })
+}
+
+fn first_line(message: &str) -> &str {
+    message.lines().next().unwrap_or(message)
+}
+
+fn read_feed(source: &Source, raw: &RawJob) -> Result<FeedWish, InputError> {
+    let checked = |value: &toml::Spanned<f64>, check: fn(f64) -> Result<f64, String>| {
+        check(*value.get_ref()).map_err(|message| source.error(&value.span(), message))
+    };
+    let optional = |value: &Option<toml::Spanned<f64>>, default: f64, check| match value {
+        Some(value) => checked(value, check),
+        None => Ok(default),
+    };
+    Ok(FeedWish {
+        rate: checked(&raw.feed.rate, check_rate)? * raw.units.mm() / 60.0,
+        weight: optional(&raw.feed.weight, 0.0, check_weight)?,
+        reduction: optional(&raw.feed.reduction, 1.0, check_reduction)?,
+        ramp: optional(&raw.feed.ramp, 0.25, check_ramp)?,
+    })
+}
+
+fn read_segments(source: &Source, raw: &RawJob, tolerance: f64) -> Result<Vec<Segment<f64>>, InputError> {
+    let unit = raw.units.short();
+    let in_units = |mm: f64| mm / raw.units.mm();
+    let mut segments: Vec<Segment<f64>> = Vec::with_capacity(raw.segment.len());
+    let mut end: Option<Complex<f64>> = None;
+    for (number, item) in raw.segment.iter().enumerate() {
+        let fail = |message: String| source.error(&item.span(), format_args!("segment {number}: {message}"));
+        let segment = segment(item.get_ref(), end, raw.units, tolerance).map_err(fail)?;
+        let [start, new_end] = Job::ends(&segment);
+        if let Some(before) = end {
+            let gap = (start - before).norm();
+            if gap > tolerance {
+                return Err(fail(format!(
+                    "it starts {} {unit} away from where the segment before it ends, at ({}, {}); they must meet within {} {unit}",
+                    in_units(gap),
+                    in_units(before.re),
+                    in_units(before.im),
+                    in_units(tolerance),
+                )));
+            }
+        }
+        end = Some(new_end);
+        segments.push(segment);
+    }
+    let (Some(first), Some(end)) = (segments.first(), end) else {
+        return Err(InputError::new(source.name.clone(), "the contour has no segments; add a [[segment]]"));
+    };
+    let gap = (first.point(0.0) - end).norm();
+    if *raw.closed.get_ref() && gap > tolerance {
+        return Err(source.error(
+            &raw.closed.span(),
+            format_args!(
+                "the contour is called closed, but ends {} {unit} away from its start; close it or say `closed = false`",
+                in_units(gap)
+            ),
+        ));
+    }
+    Ok(segments)
+}
+
+fn segment(raw: &RawSegment, end: Option<Complex<f64>>, units: Units, tolerance: f64) -> Result<Segment<f64>, String> {
+    let mm = units.mm();
+    let point = |[x, y]: Point| Complex::new(x * mm, y * mm);
+    let start_or_end =
+        |start: Option<Point>| start.map(point).or(end).ok_or_else(|| "the first segment needs a `start`".to_string());
+    let segment = match (&raw.ph, &raw.line, &raw.arc, &raw.hermite) {
+        (Some(ph), None, None, None) => {
+            let root = mm.sqrt();
+            let w = ph.w.map(|[u, v]| Complex::new(u * root, v * root));
+            Segment::Ph(PhQuintic { start: start_or_end(ph.start)?, w })
+        }
+        (None, Some(line), None, None) => Segment::Line(Line { start: start_or_end(line.start)?, end: point(line.to) }),
+        (None, None, Some(raw), None) => {
+            Segment::Arc(arc(start_or_end(raw.start)?, point(raw.to), point(raw.centre), raw.ccw, units, tolerance)?)
+        }
+        (None, None, None, Some(raw)) => {
+            let start = start_or_end(raw.start)?;
+            let curve = hermite(start, point(raw.to), point(raw.d0), point(raw.d1)).map_err(|e| e.to_string())?;
+            Segment::Ph(curve)
+        }
+        _ => return Err("it must be one of `ph`, `line`, `arc` and `hermite`".to_string()),
+    };
+    let length = segment.length();
+    if !length.is_finite() {
+        return Err("a number of it is infinite or not a number".to_string());
+    }
+    // The shortest motion that a setpoint can show is 4 nm.
+    if length < 4e-6 {
+        return Err(format!("it has no length ({length} mm); leave it out"));
+    }
+    Ok(segment)
+}
+
+fn arc(
+    start: Complex<f64>,
+    to: Complex<f64>,
+    centre: Complex<f64>,
+    ccw: bool,
+    units: Units,
+    tolerance: f64,
+) -> Result<Arc<f64>, String> {
+    let (radius, end) = (start - centre, to - centre);
+    let mismatch = (radius.norm() - end.norm()).abs();
+    if !(mismatch <= tolerance) {
+        return Err(format!(
+            "start and end of the arc are not at one distance from its centre: {} and {} {}",
+            radius.norm() / units.mm(),
+            end.norm() / units.mm(),
+            units.short(),
+        ));
+    }
+    if radius.norm() <= tolerance {
+        return Err("the arc has no radius".to_string());
+    }
+    let turn = std::f64::consts::TAU;
+    let angle = (radius.conj() * end).arg();
+    // A start that is the end again means a whole turn.
+    let angle = if (end - radius).norm() <= tolerance { 0.0 } else { angle };
+    let sweep = match (ccw, angle > 0.0) {
+        (true, true) | (false, false) if angle != 0.0 => angle,
+        (true, _) => angle + turn,
+        (false, _) => angle - turn,
+    };
+    Ok(Arc { centre, radius, sweep })
+}
+
+fn read_pieces(
+    source: &Source,
+    raw: &RawJob,
+    segments: &[Segment<f64>],
+    offset: f64,
+) -> Result<Vec<GivenPiece>, InputError> {
+    if raw.piece.is_empty() {
+        if offset != 0.0 {
+            return Err(InputError::new(
+                source.name.clone(),
+                "the job has an offset but no pieces, and offsets are not trimmed here yet; give the trimmed offset as [[piece]]",
+            ));
+        }
+        return Ok(whole_segments(segments, *raw.closed.get_ref()));
+    }
+    let mut pieces = Vec::with_capacity(raw.piece.len());
+    for (number, item) in raw.piece.iter().enumerate() {
+        let piece = piece(item.get_ref(), segments, offset, *raw.closed.get_ref())
+            .map_err(|message| source.error(&item.span(), format_args!("piece {number}: {message}")))?;
+        pieces.push(piece);
+    }
+    Ok(pieces)
+}
+
+fn piece(raw: &RawPiece, segments: &[Segment<f64>], offset: f64, closed: bool) -> Result<GivenPiece, String> {
+    let along = match (raw.segment, raw.from, raw.to, &raw.fill) {
+        (Some(segment), from, to, None) => {
+            if segment >= segments.len() {
+                return Err(format!("there is no segment {segment}; the last one is {}", segments.len() - 1));
+            }
+            let (from, to) = (from.unwrap_or(0.0), to.unwrap_or(1.0));
+            if !(from >= 0.0 && from < to && to <= 1.0) {
+                return Err(format!("it runs from {from} to {to}; it needs 0 <= from < to <= 1"));
+            }
+            Along::Segment { segment, from, to }
+        }
+        (None, None, None, Some(fill)) => {
+            let node = fill.node;
+            let turn = turning_angle(segments, node, closed).ok_or_else(|| {
+                format!("there is no node {node}; node i is where segment i ends and the next one begins")
+            })?;
+            if turn * offset <= 0.0 {
+                return Err(format!(
+                    "node {node} is not convex for this offset, so there is no gap to fill; trim there"
+                ));
+            }
+            Along::Fill { node }
+        }
+        _ => return Err("it needs either `segment` (with `from` and `to`) or `fill = { node = .. }`".to_string()),
+    };
+    let corner = |stands: bool, name: &str, ramp: Option<f64>, reduction: Option<f64>| {
+        if !stands {
+            if ramp.is_some() || reduction.is_some() {
+                return Err(format!("it has a ramp at its {name} but no corner there; say `{name}_corner = true`"));
+            }
+            return Ok(None);
+        }
+        let ramp = ramp.map(check_ramp).transpose()?;
+        let reduction = reduction.map(check_reduction).transpose()?;
+        Ok(Some(Corner { reduction, ramp }))
+    };
+    Ok(GivenPiece {
+        along,
+        start: corner(raw.start_corner, "start", raw.start_ramp, raw.start_reduction)?,
+        end: corner(raw.end_corner, "end", raw.end_ramp, raw.end_reduction)?,
+    })
+}
+
+/// The angle of equation (3) at the node where segment `node` ends; none where there is no such node.
+pub(crate) fn turning_angle(segments: &[Segment<f64>], node: usize, closed: bool) -> Option<f64> {
+    let before = segments.get(node)?;
+    let after = match segments.get(node + 1) {
+        Some(after) => after,
+        None if closed => segments.first()?,
+        None => return None,
+    };
+    Some((before.tangent(1.0).conj() * after.tangent(0.0)).arg())
+}
+
+/// The contour itself as a path: a corner wherever the tangent breaks.
+fn whole_segments(segments: &[Segment<f64>], closed: bool) -> Vec<GivenPiece> {
+    let corner = |node: usize| {
+        let breaks = turning_angle(segments, node, closed).is_some_and(|angle| angle.abs() > SMOOTH_RAD);
+        breaks.then(Corner::default)
+    };
+    let last = segments.len() - 1;
+    (0..segments.len())
+        .map(|segment| GivenPiece {
+            along: Along::Segment { segment, from: 0.0, to: 1.0 },
+            start: corner(segment.checked_sub(1).unwrap_or(last)),
+            end: corner(segment),
+        })
+        .collect()
+}

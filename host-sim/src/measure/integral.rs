@@ -1,0 +1,52 @@
+//! The time of a path by direct quadrature of equation (21), written from the paper's formulas.
+
+use shared::curve::Curve as _;
+use shared::feed::Ramp;
+
+use crate::path::{Path, PathPiece};
+
+/// Panels of a piece. With eight Gauss nodes each the sum is exact to 1e-12 for every f above 0.01.
+const PANELS: u32 = 512;
+
+/// The exact integral of dt = sigma_w/(F V) d(xi) along the path, in s.
+pub fn exact_time(path: &Path) -> f64 {
+    path.pieces.iter().map(|piece| piece_time(piece, path.weight)).sum()
+}
+
+fn piece_time(piece: &PathPiece, weight: f64) -> f64 {
+    let [from, to] = piece.interval;
+    let start = piece.segment.length_to(from);
+    let length = piece.segment_length();
+    let slowness = |xi: f64| {
+        let u = (piece.segment.length_to(xi) - start) / length;
+        let stretch = piece.stretch(xi);
+        // Equation (20); on a fill arc V is the centre feed, and the arc is its own centre path.
+        let sigma_w = stretch / ((1.0 - weight) * stretch + weight) * piece.segment.speed(xi);
+        sigma_w / (reduction(u, piece.start) * reduction(1.0 - u, piece.end) * piece.feed)
+    };
+    let width = (to - from) / f64::from(PANELS);
+    (0..PANELS)
+        .map(|k| {
+            let left = from + width * f64::from(k);
+            let panel: f64 =
+                <f64 as shared::real::Real>::GAUSS.iter().map(|&(x, w)| w * slowness(left + x * width)).sum();
+            panel * width
+        })
+        .sum()
+}
+
+/// Equations (10) and (11) term by term, at the distance `u` from the ramp's corner.
+fn reduction(u: f64, ramp: Option<Ramp<f64>>) -> f64 {
+    let Some(Ramp { length, factor }) = ramp else { return 1.0 };
+    if u >= length {
+        return 1.0;
+    }
+    const BINOMIALS: [f64; 6] = [1.0, 5.0, 10.0, 10.0, 5.0, 1.0];
+    let (rest, done) = ((length - u) / length, u / length);
+    let at_corner = [factor, factor, factor, 1.0, 1.0, 1.0];
+    let mut sum = 0.0;
+    for (k, (coefficient, binomial)) in at_corner.into_iter().zip(BINOMIALS).enumerate() {
+        sum += coefficient * binomial * rest.powi(5 - k as i32) * done.powi(k as i32);
+    }
+    sum
+}
