@@ -136,8 +136,9 @@ impl<T: Real> Executor<T> {
     #[inline(never)]
     fn cross_nodes(&mut self, pieces: &mut impl Pieces<T>, mut left: T) {
         for _ in 0..NODES_PER_TICK {
-            if let Some(last) = self.active.and_then(|piece| piece.last()) {
-                self.setpoint = last;
+            if let Some([x, y, _]) = self.active.and_then(|piece| piece.last()) {
+                // Pieces are plane: an axis that they do not move stays where it is to the end.
+                self.setpoint = [x, y, self.setpoint[2]];
                 self.spare = left;
                 self.state = State::Finished;
                 self.tau = Accumulator::new(T::HALF);
