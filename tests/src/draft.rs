@@ -64,9 +64,7 @@ impl Draft {
         Piece {
             origin: round_point(cut.origin),
             shape: match cut.shape {
-                Shape::Ph { preimage, offset } => {
-                    Shape::Ph { preimage: preimage.map(complex), offset: number(offset) }
-                }
+                Shape::Ph { preimage, offset } => Shape::Ph { preimage: preimage.map(complex), offset: number(offset) },
                 Shape::Line { chord } => Shape::Line { chord: complex(chord) },
                 Shape::Arc { radius, sweep, ratio } => {
                     Shape::Arc { radius: complex(radius), sweep: number(sweep), ratio: number(ratio) }
@@ -131,4 +129,30 @@ pub fn moved(segment: Segment<f64>, by: Complex<f64>) -> Segment<f64> {
         Segment::Line(line) => Segment::Line(Line { start: line.start + by, end: line.end + by }),
         Segment::Arc(arc) => Segment::Arc(Arc { centre: arc.centre + by, ..arc }),
     }
+}
+
+/// The same segment turned about the origin of coordinates; `by` has magnitude 1.
+pub fn turned(segment: Segment<f64>, by: Complex<f64>) -> Segment<f64> {
+    match segment {
+        Segment::Ph(curve) => {
+            let root = by.sqrt();
+            Segment::Ph(PhQuintic { start: curve.start * by, w: curve.w.map(|w| w * root) })
+        }
+        Segment::Line(line) => Segment::Line(Line { start: line.start * by, end: line.end * by }),
+        Segment::Arc(arc) => Segment::Arc(Arc { centre: arc.centre * by, radius: arc.radius * by, ..arc }),
+    }
+}
+
+/// Segments that start at the origin, each moved and turned to go on where and as the one before it ends, at one offset.
+pub fn smooth_path(segments: &[Segment<f64>], start: Complex<f64>, offset: f64, feed: f64) -> Vec<Draft> {
+    let (mut at, mut along) = (start, Complex::new(1.0, 0.0));
+    segments
+        .iter()
+        .map(|&segment| {
+            let by = along * Draft::whole(segment, 0.0, feed).direction(0.0).conj();
+            let draft = Draft::whole(moved(turned(segment, by), at), offset, feed);
+            (at, along) = (draft.contact(1.0), draft.direction(1.0));
+            draft
+        })
+        .collect()
 }

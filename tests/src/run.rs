@@ -67,29 +67,25 @@ pub struct Run<T> {
     pub most_taken: usize,
 }
 
-/// Runs pieces that are loaded, for `limit` ticks at most, and keeps what every tick put out if `keep`.
+/// Runs pieces that are loaded, for `limit` ticks at most; `visit` sees the executor after every tick. Keeps no setpoints.
 pub fn walk<T: Scalar>(
     active: impl Iterator<Item = ActivePiece<T>>,
     order: Order,
     tick: f64,
     limit: u64,
-    keep: bool,
+    mut visit: impl FnMut(&Executor<T>),
 ) -> Run<T> {
     let mut executor = Executor::new(T::lit(tick), [Fixed(0); 3]);
     executor.start(order);
     let mut feeder = Feeder { rest: active, taken: 0 };
-    let mut run =
-        Run { setpoints: vec![], places: vec![], ticks: 0, time: 0.0, finished: false, most_taken: 0 };
+    let mut run = Run { setpoints: vec![], places: vec![], ticks: 0, time: 0.0, finished: false, most_taken: 0 };
     while run.ticks < limit && !run.finished {
         let before = feeder.taken;
-        let setpoint = executor.tick(&mut feeder);
+        executor.tick(&mut feeder);
         run.ticks += 1;
         run.most_taken = run.most_taken.max(feeder.taken - before);
         run.finished = executor.state() == State::Finished;
-        if keep {
-            run.setpoints.push(setpoint);
-            run.places.extend(executor.place());
-        }
+        visit(&executor);
     }
     run.time = run.ticks as f64 * tick - executor.spare_time().into();
     run
@@ -104,7 +100,12 @@ pub fn run<T: Scalar>(path: &[Draft], weight: f64, order: Order) -> Result<Run<T
 pub fn run_at<T: Scalar>(path: &[Draft], weight: f64, order: Order, tick: f64) -> Result<Run<T>, PathError> {
     let active = load(&header::<T>(weight, order), &pieces(path), tick)?;
     let time: f64 = path.iter().map(|draft| draft.duration(weight)).sum();
-    Ok(walk(active.into_iter(), order, tick, (2.0 * time / tick) as u64 + 100, true))
+    let (mut setpoints, mut places) = (vec![], vec![]);
+    let run = walk(active.into_iter(), order, tick, (2.0 * time / tick) as u64 + 100, |executor| {
+        setpoints.push(executor.setpoint());
+        places.extend(executor.place());
+    });
+    Ok(Run { setpoints, places, ..run })
 }
 
 /// The setpoint in mm.

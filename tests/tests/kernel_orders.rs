@@ -71,7 +71,7 @@ proptest! {
 
     /// "Exact" integrates (21) to 1e-9, whatever the curve, w, ramps and feed, down to ten ticks for a piece.
     ///
-    /// The range, found by a sweep of 20 000 such pieces: parametric speed within 1:20, |1 + kappa d| at least 0.25. Beyond it the
+    /// The range, found by a sweep of 30 000 such pieces: parametric speed within 1:20, |1 + kappa d| at least 0.25. Beyond it the
     /// integrand has poles so near to the piece that a tick of a tenth of the piece would need more than the eight substeps that
     /// keep a tick bounded; at 30 ticks and more only cusps of 1:100 are left, at 100 ticks those of 1:10 000.
     #[test]

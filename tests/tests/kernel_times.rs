@@ -43,9 +43,9 @@ fn both_ramps_take_the_closed_form_time() {
             let worst = within.fold(0.0, f64::max);
             println!("closed form, order {order:?}, {scalar}: at most {worst:.1e} ticks off");
             assert!(worst < 1.0, "order {order:?}, {scalar}: {worst} ticks");
-            let beyond = misses.iter().map(|(miss, growth)| {
-                (miss - if order == Order::First { growth / 2.0 } else { 0.0 }).abs()
-            });
+            let beyond = misses
+                .iter()
+                .map(|(miss, growth)| (miss - if order == Order::First { growth / 2.0 } else { 0.0 }).abs());
             let worst = beyond.fold(0.0, f64::max);
             // What is left is of the next order in tick/ramp time, 1/70 at the shortest ramp; at orders that leave nothing, f32
             // adds up some 600 roundings of a tick.
