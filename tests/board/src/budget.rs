@@ -1,0 +1,81 @@
+//! All figures of an image together.
+
+use std::collections::BTreeMap;
+
+use serde::Serialize;
+
+use crate::Error;
+use crate::image::Image;
+use crate::jobs::{Kind, ORDERS, job};
+use crate::probe::EXCEPTION_FRAME;
+use crate::reach::Reach;
+use crate::run::run_job;
+use crate::stages::Stages;
+
+/// Ticks of each job over which the stages are counted: the middle of a ramp, where every term of the feed law is alive.
+const RAMP_TICKS: std::ops::Range<u32> = 40..72;
+
+/// Every figure.
+#[derive(Clone, Debug, Serialize)]
+pub struct Budget {
+    /// By kind of piece and order, such as `ph 1`: instructions per stage, and of the whole interrupt.
+    pub instructions: BTreeMap<String, BTreeMap<String, u32>>,
+    /// The most stack of the interrupt, in bytes, with the frame that the processor stacks.
+    pub stack_bytes: u32,
+    /// Flash, in bytes.
+    pub flash_bytes: u32,
+    /// RAM without the stack, in bytes.
+    pub ram_bytes: u32,
+    /// Functions that the tick reaches and must not.
+    pub forbidden: Vec<String>,
+    /// Calls through a register that the tick can reach.
+    pub indirect: Vec<String>,
+    /// Functions that the tick reaches.
+    pub reached: Vec<String>,
+}
+
+/// Measures `image`; `progress` is told what is measured next.
+pub fn measure(image: &Image, mut progress: impl FnMut(&str)) -> Result<Budget, Error> {
+    let reach = Reach::of_tick(image)?;
+    let stages = Stages::new(image)?;
+    let addresses = reach.instructions(image);
+    let mut instructions = BTreeMap::new();
+    let mut stack = 0;
+    for kind in Kind::ALL {
+        for (order, order_name) in ORDERS {
+            let name = format!("{} {order_name}", kind.name());
+            progress(&name);
+            let (header, pieces) = job(kind, order);
+            let counted = run_job(image, header, pieces, 1.0, |probe| {
+                probe.count_instructions(addresses.clone(), RAMP_TICKS);
+            })?;
+            let ticks = &counted.seen.ticks;
+            let mut row: BTreeMap<String, u32> = stages
+                .attribute(&counted.seen.executed, counted.seen.counted_ticks)
+                .into_iter()
+                .map(|(stage, count)| (stage.to_owned(), count))
+                .collect();
+            row.insert("median".to_owned(), median(ticks.iter().map(|tick| tick.instructions)));
+            row.insert("most".to_owned(), ticks.iter().map(|tick| tick.instructions).max().unwrap_or(0));
+            instructions.insert(name, row);
+            stack = stack.max(counted.seen.handler_stack);
+        }
+    }
+    let sizes = image.sizes();
+    Ok(Budget {
+        instructions,
+        stack_bytes: stack + EXCEPTION_FRAME,
+        flash_bytes: sizes.flash,
+        ram_bytes: sizes.ram,
+        forbidden: reach.forbidden().into_iter().map(str::to_owned).collect(),
+        indirect: reach.indirect.iter().map(|(name, address)| format!("{name} at {address:#010x}")).collect(),
+        reached: reach.functions.iter().map(|function| function.name.clone()).collect(),
+    })
+}
+
+/// The middle one of some counts; the upper of two.
+pub fn median(counts: impl Iterator<Item = u32>) -> u32 {
+    let mut counts: Vec<u32> = counts.collect();
+    counts.sort_unstable();
+    counts.get(counts.len() / 2).copied().unwrap_or(0)
+}

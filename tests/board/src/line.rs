@@ -1,0 +1,163 @@
+//! The far end of the serial line: a conversation partner in virtual time.
+
+use std::collections::VecDeque;
+use std::fmt;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+use rigless::chip::Timeline;
+use rigless::chip::uart::Peer;
+use rigless::snapshot::Store;
+use rigless::time::VirtualNanos;
+use shared::link::{Decoder, Event, Report, Sender, SenderError, Telemetry};
+use shared::piece::{Header, Piece};
+
+/// The controller has its receiver on by then; what comes before is lost, as on a bench.
+const POWER_UP_US: u64 = 5_000;
+
+/// Whoever speaks to the controller.
+pub trait Talker: Send {
+    /// A byte from the controller.
+    fn receive(&mut self, now_us: u64, byte: u8);
+    /// Bytes for the controller, if there are any now.
+    fn poll(&mut self, now_us: u64) -> Option<Vec<u8>>;
+    /// Whether there is nothing more to say or to wait for.
+    fn is_done(&self) -> bool;
+}
+
+/// A talker that a test and the board can both reach.
+pub type Shared<T> = Arc<Mutex<T>>;
+
+/// `talker`, to be shared with the board.
+pub fn share<T>(talker: T) -> Shared<T> {
+    Arc::new(Mutex::new(talker))
+}
+
+/// Looks at a shared talker.
+pub fn lock<T: ?Sized>(shared: &Mutex<T>) -> MutexGuard<'_, T> {
+    shared.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// The peer at the port's pins.
+pub(crate) struct Line {
+    talker: Shared<dyn Talker>,
+    outgoing: VecDeque<u8>,
+}
+
+impl Line {
+    pub(crate) fn new(talker: Shared<dyn Talker>) -> Self {
+        Self { talker, outgoing: VecDeque::new() }
+    }
+}
+
+impl fmt::Debug for Line {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Line").finish_non_exhaustive()
+    }
+}
+
+impl Store for Line {}
+
+impl Peer for Line {
+    fn receive(&mut self, word: u16, context: &mut Timeline<'_, '_>) {
+        lock(&*self.talker).receive(context.now().0 / 1_000, word as u8);
+    }
+
+    fn transmit(&mut self, now: VirtualNanos) -> Option<u16> {
+        let now_us = now.0 / 1_000;
+        if self.outgoing.is_empty() && now_us >= POWER_UP_US {
+            while let Some(bytes) = lock(&*self.talker).poll(now_us) {
+                self.outgoing.extend(bytes);
+            }
+        }
+        self.outgoing.pop_front().map(u16::from)
+    }
+}
+
+/// Sends one job, and waits for its end.
+pub struct JobTalker {
+    sender: Sender<'static>,
+    /// What the controller reported at the end: ticks, residual time in s, hash of the setpoints.
+    pub finished: Option<(u32, f32, u64)>,
+    /// The last telemetry.
+    pub telemetry: Option<Telemetry>,
+}
+
+impl JobTalker {
+    /// A talker with this job. The job is kept for the life of the process: the sender borrows it, and there are few.
+    pub fn new(header: Header<f32>, pieces: Vec<Piece<f32>>) -> Self {
+        let sender = Sender::new(Box::leak(Box::new(header)), pieces.leak());
+        Self { sender, finished: None, telemetry: None }
+    }
+
+    /// Why the job was not taken, if it was not.
+    pub fn error(&self) -> Option<SenderError> {
+        self.sender.error()
+    }
+
+    /// Commands that had to be sent again.
+    pub fn resent(&self) -> u32 {
+        self.sender.resent()
+    }
+}
+
+impl Talker for JobTalker {
+    fn receive(&mut self, now_us: u64, byte: u8) {
+        match self.sender.receive(now_us, byte) {
+            Some(Event::Finished { ticks, residual, hash }) => self.finished = Some((ticks, residual, hash)),
+            Some(Event::Telemetry(telemetry)) => self.telemetry = Some(telemetry),
+            Some(Event::Hello(_) | Event::Failed(_)) | None => {}
+        }
+    }
+
+    fn poll(&mut self, now_us: u64) -> Option<Vec<u8>> {
+        self.sender.poll(now_us).map(|frame| frame.to_vec())
+    }
+
+    fn is_done(&self) -> bool {
+        self.sender.is_finished() || self.sender.error().is_some()
+    }
+}
+
+/// Says given bytes one after another, however faulty, and keeps every report that comes back.
+#[derive(Default)]
+pub struct Script {
+    /// What to say: when, in microseconds, and what.
+    lines: VecDeque<(u64, Vec<u8>)>,
+    until_us: u64,
+    now_us: u64,
+    decoder: Decoder,
+    /// What came back.
+    pub reports: Vec<Report>,
+}
+
+impl Script {
+    /// Says each of `lines` in turn, `gap_us` apart, and listens for `gap_us` more.
+    pub fn new(lines: impl IntoIterator<Item = Vec<u8>>, gap_us: u64) -> Self {
+        let lines: VecDeque<_> =
+            lines.into_iter().enumerate().map(|(k, line)| (POWER_UP_US + k as u64 * gap_us, line)).collect();
+        let until_us = POWER_UP_US + lines.len() as u64 * gap_us;
+        Self { lines, until_us, ..Self::default() }
+    }
+}
+
+impl Talker for Script {
+    fn receive(&mut self, now_us: u64, byte: u8) {
+        self.now_us = now_us;
+        if let Some(Ok((_, report))) = self.decoder.push(byte) {
+            self.reports.push(report);
+        }
+    }
+
+    fn poll(&mut self, now_us: u64) -> Option<Vec<u8>> {
+        self.now_us = now_us;
+        let (at, _) = self.lines.front()?;
+        if *at > now_us {
+            return None;
+        }
+        self.lines.pop_front().map(|(_, line)| line)
+    }
+
+    fn is_done(&self) -> bool {
+        self.lines.is_empty() && self.now_us >= self.until_us
+    }
+}
