@@ -13,12 +13,12 @@
 //! limited on both sides. The integral rests while the command is at its limit and the velocity error points outwards.
 //!
 //! The position error is formed in integers: the setpoint times counts per unit as a 64-bit product, less the encoder's count.
-//! It is rounded only when it becomes a float, so that it is as good far from home as at home.
+//! It is cut to at most one unit and rounded only when it becomes a float, so that it is as good far from home as at home.
 //!
 //! | part | cost, f32 on a Cortex-M4F | error |
 //! | --- | --- | --- |
-//! | [`Servo::step`] | `cargo xtask budget`, stage `servo`; no division, no branch that depends on data but the limits | velocity and command: 8 roundoffs of the largest term (test `f32_twin`) |
-//! | [`Servo::position_error`] | part of it | 2^-31 of the coordinate, 1 nm at 2 m, and 2 roundoffs of the error itself |
+//! | [`Servo::step`] | `cargo xtask budget`, stage `servo`; no division, no loop, no panic path | velocity and command: 8 roundoffs of the largest term (test `f32_twin`) |
+//! | [`Servo::position_error`] | part of it | one unit, 3.8 nm; 2^-31 of the coordinate, 1 nm at 2 m; 2 roundoffs of the error itself |
 
 use core::fmt;
 
@@ -166,18 +166,18 @@ pub struct Servo<T> {
     ratio: i32,
     /// Binary places by which a count is shifted above the lower word of the product.
     shift: u32,
-    /// mm per unit of the upper word of the position error, and of half a unit of the lower word.
-    weights: [T; 2],
+    /// mm per unit of the position error in [`Servo::position_error`].
+    weight: T,
     position_gain: T,
-    /// Velocity feedforward / (2 periods): times the way of two ticks.
+    /// Velocity feedforward / (2 periods), for the way of two ticks in units of 2^-18 mm.
     velocity_feedforward: T,
-    /// Gain of the acceleration feedforward / period^2.
+    /// Gain of the acceleration feedforward / period^2, for a way in units of 2^-18 mm.
     acceleration_feedforward: T,
     /// mm/s per count and tick.
     speed_per_count: T,
-    /// How much of the measured velocity the command subtracts: 1 or, where the drive does it, 0.
-    feedback: T,
     velocity_gain: T,
+    /// Command per measured mm/s: the velocity gain or, where the drive closes that loop, 0.
+    damping: T,
     /// Command per mm/s of velocity error and tick.
     integral_gain: T,
     limit: T,
@@ -188,7 +188,7 @@ pub struct Servo<T> {
 pub struct ServoState<T> {
     /// The setpoint of the tick before: where the axis shall be now.
     target: Fixed,
-    /// The way from the setpoint before to `target`, in mm.
+    /// The way from the setpoint before to `target`, in units of 2^-18 mm.
     stride: T,
     /// The counter at coordinate zero.
     datum: i32,
@@ -196,7 +196,8 @@ pub struct ServoState<T> {
     encoder: i32,
     integral: T,
     error: T,
-    saturated: bool,
+    /// What the limit cut off.
+    excess: T,
 }
 
 impl<T: Real> ServoState<T> {
@@ -207,7 +208,7 @@ impl<T: Real> ServoState<T> {
 
     /// Whether the last command was cut off at the limit.
     pub fn is_saturated(&self) -> bool {
-        self.saturated
+        self.excess != T::ZERO
     }
 }
 
@@ -248,18 +249,17 @@ impl ServoSettings {
             return Err(ServoError::Limit(limit));
         }
         let (ratio, shift) = normalise(self.counts_per_mm / UNITS_PER_MM);
-        // The upper word of the error holds counts * 2^shift.
-        let upper = 1.0 / (self.counts_per_mm * power_of_two(shift));
         Ok(Servo {
             ratio,
             shift,
-            weights: [T::lit(upper), T::lit(upper / 2_147_483_648.0)],
+            // The error is in counts * 2^(shift + 2).
+            weight: T::lit(0.25 / (self.counts_per_mm * power_of_two(shift))),
             position_gain: T::lit(self.position_gain),
-            velocity_feedforward: T::lit(self.velocity_feedforward / (2.0 * period)),
-            acceleration_feedforward: T::lit(self.acceleration_feedforward * lag / (period * period)),
+            velocity_feedforward: T::lit(self.velocity_feedforward / (2.0 * period * UNITS_PER_MM)),
+            acceleration_feedforward: T::lit(self.acceleration_feedforward * lag / (period * period * UNITS_PER_MM)),
             speed_per_count: T::lit(1.0 / (self.counts_per_mm * period)),
-            feedback: T::lit(feedback),
             velocity_gain: T::lit(velocity_gain),
+            damping: T::lit(velocity_gain * feedback),
             integral_gain: T::lit(velocity_gain * self.integral_gain * period),
             limit: T::lit(limit),
         })
@@ -298,7 +298,7 @@ impl<T: Real> Servo<T> {
             encoder,
             integral: T::ZERO,
             error: T::ZERO,
-            saturated: false,
+            excess: T::ZERO,
         }
     }
 
@@ -311,38 +311,39 @@ impl<T: Real> Servo<T> {
 
     /// How far `position` is ahead of the encoder, in mm, where `counts` is the encoder's way from coordinate zero.
     ///
-    /// The difference is exact modulo 2^64, so the counter may wrap: the result is right wherever the axis stands.
+    /// The difference is exact modulo 2^64, so the counter may wrap and the axis may stand anywhere. It is cut to units between a
+    /// half and one of 2^-18 mm, in which 32 bits hold every error up to 4 m.
     #[inline(always)]
     pub fn position_error(&self, position: Fixed, counts: i32) -> T {
         let counts = i64::from((counts as u32).wrapping_shl(self.shift)) << 32;
-        let error = self.scaled(position).wrapping_sub(counts);
-        T::from_int((error >> 32) as i32) * self.weights[0] + T::from_int((error as u32 >> 1) as i32) * self.weights[1]
+        let error = self.scaled(position).wrapping_sub(counts) >> 30;
+        T::from_int(error as i32) * self.weight
     }
 
     /// One tick: the command for the time until the next tick, from the counter as it reads now and from where the axis shall be
     /// at the next tick. In mm/s or mm/s^2 as the settings say; always finite and within the limit.
     #[inline(always)]
     pub fn step(&self, state: &mut ServoState<T>, setpoint: Fixed, encoder: i32) -> T {
-        let ahead: T = setpoint.minus(state.target);
+        let ahead = T::from_int(setpoint.0.wrapping_sub(state.target.0));
         let error = self.position_error(state.target, encoder.wrapping_sub(state.datum));
         let measured = T::from_int(encoder.wrapping_sub(state.encoder)) * self.speed_per_count;
         let asked = error * self.position_gain + (ahead + state.stride) * self.velocity_feedforward;
-        let acceleration = (ahead - state.stride) * self.acceleration_feedforward;
 
-        let wanted = (asked - measured * self.feedback) * self.velocity_gain + acceleration + state.integral;
+        let wanted = asked * self.velocity_gain - measured * self.damping
+            + (ahead - state.stride) * self.acceleration_feedforward
+            + state.integral;
         let command = wanted.most(-self.limit).least(self.limit);
-        let saturated = wanted != command;
+        let excess = wanted - command;
         let velocity_error = asked - measured;
-        if !(saturated && (velocity_error > T::ZERO) == (wanted > T::ZERO)) {
-            let integral = state.integral + velocity_error * self.integral_gain;
-            state.integral = integral.most(-self.limit).least(self.limit);
-        }
+        // At the limit, only what leads back from it is summed up.
+        let inward = velocity_error * excess <= T::ZERO;
+        state.integral += if inward { velocity_error * self.integral_gain } else { T::ZERO };
 
         state.target = setpoint;
         state.stride = ahead;
         state.encoder = encoder;
         state.error = error;
-        state.saturated = saturated;
+        state.excess = excess;
         command
     }
 }

@@ -158,8 +158,8 @@ impl Plant {
 }
 
 impl Measured {
-    /// Every axis on its setpoint.
-    fn ideal(setpoint: Position) -> Self {
+    /// Every axis on its setpoint: a machine without drives.
+    pub fn ideal(setpoint: Position) -> Self {
         let position = setpoint.map(Fixed::to_mm);
         Self { encoder: position, position, ..Self::default() }
     }
@@ -179,6 +179,14 @@ impl Driven {
     /// Whether a stepping motor moves it; a servo otherwise.
     pub fn is_stepper(&self) -> bool {
         matches!(self.drive, Drive::Stepper { .. })
+    }
+
+    /// The drive, motor and table alone, as they stand, for a controller elsewhere: a virtual board's pins.
+    pub fn detached(&self) -> Box<dyn Axis + Send> {
+        match self.drive {
+            Drive::Servo { axis, .. } => Box::new(axis),
+            Drive::Stepper { axis, .. } => Box::new(axis),
+        }
     }
 
     fn rest_at(&mut self, position: Position, measured: &mut Measured) {

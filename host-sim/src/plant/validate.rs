@@ -55,6 +55,14 @@ fn locate(text: &str, block: Option<usize>, path: &[&str]) -> Place {
     Place::of(text, at)
 }
 
+/// A bound as a person would write it: three digits, and no row of zeros.
+fn written(bound: f64) -> String {
+    // Rounding by way of the text keeps the shortest decimal.
+    let short = format!("{bound:.2e}").parse().unwrap_or(bound);
+    let bound = if (short - bound).abs() > 1e-9 * bound.abs() && bound.abs() < 1000.0 { short } else { bound };
+    if bound != 0.0 && bound.abs() < 1e-3 { format!("{bound:e}") } else { bound.to_string() }
+}
+
 /// One block of axes under examination.
 pub struct Block<'a> {
     /// The file.
@@ -78,7 +86,7 @@ impl Block<'_> {
         if value >= least && value <= most {
             return Ok(value);
         }
-        Err(self.fault(path, value.to_string(), format!("{least} to {most} {unit}")))
+        Err(self.fault(path, value.to_string(), format!("{} to {} {unit}", written(least), written(most))))
     }
 
     /// The names of the block are not what a plant can use.

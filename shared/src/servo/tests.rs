@@ -1,5 +1,7 @@
 //! Closed forms of the servo, its f64 twin, and what it refuses.
 
+use proptest::prelude::*;
+
 use super::*;
 
 const TICK: f64 = 1.0 / 1024.0;
@@ -165,19 +167,19 @@ fn a_counter_that_wraps_changes_nothing() {
     }
 }
 
-/// Near home and 4 m away the error is that of exact arithmetic, within the documented 2^-31 of the coordinate.
+/// Near home and 4 m away the error is that of exact arithmetic, within the documented unit and 2^-31 of the coordinate.
 #[test]
 fn the_position_error_is_exact_far_from_home() {
     for counts_per_mm in [0.01, 1.0, 787.401_574_803_149_6, 1000.0, 99_999.9, 131_072.0] {
         let settings = ServoSettings { counts_per_mm, ..velocity_drive() };
         let servo: Servo<f32> = settings.activate(TICK).unwrap();
         for mm in [0.0, 0.3, -17.77, 1_999.9, -2_000.0, 4_000.0] {
-            for lag in [0.0, 1e-4, -0.003, 0.25, -20.0] {
+            for lag in [0.0, 1e-4, -0.003, 0.25, -20.0, 3_999.0] {
                 let position = Fixed::from_mm(mm);
                 let counts = libm::round((mm - lag) * counts_per_mm) as i32;
                 let exact = position.to_mm() - f64::from(counts) / counts_per_mm;
                 let found = f64::from(servo.position_error(position, counts));
-                let bound = mm.abs() / 2_147_483_648.0 + exact.abs() * f64::from(f32::EPSILON) + 1e-12;
+                let bound = 1.0 / UNITS_PER_MM + mm.abs() / 2_147_483_648.0 + exact.abs() * f64::from(f32::EPSILON);
                 assert!((found - exact).abs() <= bound, "{counts_per_mm} {mm} {lag}: {found} {exact}");
             }
         }
@@ -244,5 +246,36 @@ fn each_bad_setting_is_named() {
         (ServoSettings { drive: accelerating(1.0, f64::INFINITY), ..good }, TICK, "limit"),
     ] {
         assert_eq!(settings.activate::<f32>(period).unwrap_err().key(), key);
+    }
+}
+
+proptest! {
+    /// Whatever the counter shows and the path does, the command is a number within the limit.
+    #[test]
+    fn the_command_stays_within_its_limit(
+        counts_per_mm in LEAST_COUNTS_PER_MM..MOST_COUNTS_PER_MM,
+        gains in [0.1..1000.0, 0.1..1000.0, 0.0..1000.0, 0.0..2.0, 0.0..2.0],
+        limit in 1.0..1e9,
+        inputs in prop::collection::vec((any::<i32>(), any::<i32>()), 1..50),
+        takes_velocity in any::<bool>(),
+    ) {
+        let drive = if takes_velocity {
+            DriveSettings::Velocity { lag: gains[3] / 2.0, limit }
+        } else {
+            DriveSettings::Acceleration { velocity_gain: gains[1], limit }
+        };
+        let settings = ServoSettings {
+            counts_per_mm,
+            position_gain: gains[0],
+            integral_gain: gains[2],
+            velocity_feedforward: gains[3],
+            acceleration_feedforward: gains[4],
+            drive,
+        };
+        let servo: Servo<f32> = settings.activate(TICK).unwrap();
+        let mut state = servo.at_rest(Fixed(inputs[0].0), inputs[0].1);
+        for (setpoint, encoder) in inputs {
+            prop_assert!(servo.step(&mut state, Fixed(setpoint), encoder).abs() <= limit as f32);
+        }
     }
 }

@@ -22,7 +22,7 @@ fn rigid(law: DriveLaw) -> ServoAxisModel {
 
 /// 20 kg and 30 kg on a spring of 4740 N/mm: 100 Hz.
 fn sprung(damping: f64, step: f64) -> ServoAxisModel {
-    let spring = Spring { stiffness: 4737.410_112_522_9, damping, backlash: 0.0, masses: [20.0, 30.0] };
+    let spring = Spring { stiffness: 4_737.410_112_522_9, damping, backlash: 0.0, masses: [20.0, 30.0] };
     ServoAxisModel {
         friction: Friction::default(),
         spring: Some((spring, Friction::default())),
@@ -193,7 +193,7 @@ fn a_spring_with_a_dead_zone_has_its_width() {
     }
     // At steady speed the flank also carries the table's friction, 30 kg (500 + 50 * 4.9) mm/s^2 = 22.5 N: 0.005 mm a side.
     let speed = axis.motor().velocity.abs();
-    let stretch = 30.0 * (500.0 + 50.0 * speed) * 1e-3 / 4737.41;
+    let stretch = 30.0 * (500.0 + 50.0 * speed) * 1e-3 / 4_737.41;
     assert!((gap[0] - gap[1] - 0.05 - 2.0 * stretch).abs() < 1e-6, "{gap:?} {stretch}");
 }
 
