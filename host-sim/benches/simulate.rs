@@ -10,7 +10,7 @@ use host_sim::job::Job;
 use host_sim::path::Path;
 use host_sim::plant::Plant;
 use host_sim::reproduce::farouki2018::CONTOUR;
-use host_sim::simulate::{SETTLING_TICKS, drive, run, simulate};
+use host_sim::simulate::{SETTLING_TICKS, run, simulate};
 use shared::piece::Order;
 
 fn benchmark(criterion: &mut Criterion) {
@@ -27,7 +27,7 @@ fn benchmark(criterion: &mut Criterion) {
                 b.iter(|| {
                     let mut mill = mill.clone();
                     mill.rest_at(path.start());
-                    simulate(&path, job.units, SETTLING_TICKS, drive(&mut mill), |_| ()).unwrap().max_contour_error
+                    simulate(&path, job.units, SETTLING_TICKS, |at| mill.advance(at), |_| ()).unwrap().max_contour_error
                 });
             });
         }

@@ -1,5 +1,7 @@
 //! Bad input, as a person meets it: one sentence with the place, exit status 2, nothing written.
 
+#![allow(clippy::unwrap_used, reason = "a failed test says where")]
+
 use std::path::PathBuf;
 use std::process::{Command, Output};
 

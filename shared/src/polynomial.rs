@@ -37,33 +37,32 @@ pub enum Sign {
 
 /// The sign over the whole of -1/2..=1/2 of the polynomial with these Bernstein coefficients.
 ///
-/// Coefficients of one sign prove it; otherwise the interval is halved by de Casteljau's scheme, down to 2^-[`HALVINGS`] of
+/// Coefficients of one sign, by more than their rounding, prove it; otherwise the interval is halved by de Casteljau's scheme, down to 2^-[`HALVINGS`] of
 /// it. Load time: at most 2 [`HALVINGS`] subdivisions near one zero, and a polynomial has few.
 pub fn sign<T: Real, const N: usize>(bernstein: [T; N]) -> Sign {
     let end = bernstein.first().copied().unwrap_or(T::ZERO);
-    if end == T::ZERO {
-        return Sign::Vanishing;
-    }
+    let largest = bernstein.iter().fold(T::ZERO, |largest: T, b| largest.most(b.abs()));
+    let least = largest * (T::lit(8.0) * T::ROUNDOFF);
     let flip = if end < T::ZERO { -T::ONE } else { T::ONE };
     // Depth first; the halves still to be looked at, at most one a level.
     let mut pending: heapless::Vec<([T; N], u32), { HALVINGS as usize + 1 }> = heapless::Vec::new();
     let mut current = Some((bernstein.map(|b| b * flip), 0));
     while let Some((mut part, depth)) = current {
-        if part.iter().all(|&b| b > T::ZERO) {
+        if part.iter().all(|&b| b > least) {
             current = pending.pop();
             continue;
         }
-        let ends_hold = part.first().is_some_and(|&b| b > T::ZERO) && part.last().is_some_and(|&b| b > T::ZERO);
+        let ends_hold = part.first().is_some_and(|&b| b > least) && part.last().is_some_and(|&b| b > least);
         if depth >= HALVINGS || !ends_hold {
             return Sign::Vanishing;
         }
         // de Casteljau at the middle: `part` becomes the right half, `left` collects the left one.
         let mut left = part;
-        for k in 1..N {
+        for (k, slot) in left.iter_mut().enumerate().skip(1) {
             for j in 0..N - k {
                 part[j] = (part[j] + part[j + 1]) * T::HALF;
             }
-            left[k] = part[0];
+            *slot = part[0];
         }
         if pending.push((part, depth + 1)).is_err() {
             return Sign::Vanishing;

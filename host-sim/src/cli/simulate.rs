@@ -5,9 +5,9 @@ use std::io::Write;
 use clap::Args;
 use host_sim::job::{Job, Units};
 use host_sim::path::Path;
-use host_sim::plant::Plant;
+use host_sim::plant::{Measured, Plant};
 use host_sim::report;
-use host_sim::simulate::{Outcome, SETTLING_TICKS, Sample, drive, ideal, simulate};
+use host_sim::simulate::{Outcome, SETTLING_TICKS, Sample, simulate};
 
 use super::Failure;
 use super::motion::Motion;
@@ -21,7 +21,7 @@ use super::output::{create, failed, json};
 pub struct Simulate {
     #[command(flatten)]
     motion: Motion,
-    /// The machine, in TOML; without one the axes are where their setpoints are
+    /// The machine: a TOML file, or `farouki2018-mill`, which is built in; without one the axes are where their setpoints are
     #[arg(long, value_name = "FILE")]
     plant: Option<String>,
     /// Write the result as JSON; `-` is standard output
@@ -72,7 +72,7 @@ impl Simulate {
         let mut written = Ok(());
         let keep = self.report.is_some();
         let look = |sample: &Sample| {
-            if sample.tick % 1024 == 0 {
+            if sample.tick.is_multiple_of(1024) {
                 bar.set_position(sample.tick / 1024);
             }
             if keep {
@@ -83,10 +83,10 @@ impl Simulate {
             }
         };
         let outcome = match plant {
-            None => simulate(path, job.units, 0, ideal, look),
+            None => simulate(path, job.units, 0, Measured::ideal, look),
             Some(mut plant) => {
                 plant.rest_at(path.start());
-                simulate(path, job.units, SETTLING_TICKS, drive(&mut plant), look)
+                simulate(path, job.units, SETTLING_TICKS, |setpoint| plant.advance(setpoint), look)
             }
         };
         bar.finish_and_clear();
@@ -143,4 +143,12 @@ fn print(outcome: &Outcome) {
         outcome.max_contour_error, outcome.rms_contour_error
     );
     println!("setpoints           {}", outcome.setpoint_hash);
+    for (axis, (saturated, lost)) in ["x", "y"].iter().zip(outcome.saturated_ticks.iter().zip(outcome.lost_steps)) {
+        if *saturated > 0 {
+            println!("warning: the drive of {axis} is at its limit in {saturated} ticks; it cannot follow this feed");
+        }
+        if lost > 0 {
+            println!("warning: {axis} loses steps, {lost} full steps at the worst; the part would be spoiled");
+        }
+    }
 }

@@ -147,7 +147,7 @@ fn arc(
 ) -> Result<Arc<f64>, String> {
     let (radius, end) = (start - centre, to - centre);
     let mismatch = (radius.norm() - end.norm()).abs();
-    if !(mismatch <= tolerance) {
+    if mismatch > tolerance || mismatch.is_nan() {
         return Err(format!(
             "start and end of the arc are not at one distance from its centre: {} and {} {}",
             radius.norm() / units.mm(),

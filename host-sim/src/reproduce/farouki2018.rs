@@ -12,7 +12,7 @@ use crate::job::{FeedOverride, Job};
 use crate::measure::exact_time;
 use crate::path::Path;
 use crate::plant::Plant;
-use crate::simulate::{Outcome, SETTLING_TICKS, Sample, drive, simulate};
+use crate::simulate::{Outcome, SETTLING_TICKS, Sample, simulate};
 
 /// The contour with its trimmed pieces.
 pub const CONTOUR: &str = include_str!("../../../examples/farouki2018.toml");
@@ -120,7 +120,8 @@ fn experiment(job: &Job, mill: &Plant, weight: f64, reduction: f64) -> Result<Ex
     let mut mill = mill.clone();
     mill.rest_at(path.start());
     let mut samples = Vec::new();
-    let outcome = simulate(&path, job.units, SETTLING_TICKS, drive(&mut mill), |sample| samples.push(*sample))
+    let drive = |setpoint| mill.advance(setpoint);
+    let outcome = simulate(&path, job.units, SETTLING_TICKS, drive, |sample| samples.push(*sample))
         .ok_or("the path does not end")?;
     Ok(Experiment { weight, reduction, exact_time_s: exact_time(&path), outcome, samples })
 }

@@ -14,9 +14,8 @@ use shared::real::Real;
 
 use crate::job::Units;
 use crate::path::Path;
-use crate::plant::Plant;
+use crate::plant::Measured;
 use outcome::Gauge;
-use shared::complex::Complex;
 
 /// Pieces from an iterator, each checked by the loader as it is taken.
 pub struct Feeder<T, I> {
@@ -66,34 +65,22 @@ pub fn run(path: &Path, mut look: impl FnMut(u64, &Executor<f32>)) -> Option<Run
 
 /// Simulates `path`: runs the tick, moves the axes by `drive`, and shows every sample to `look`.
 ///
-/// `drive` gets each setpoint and returns where the encoders stand at the end of its tick; the first `settling` ticks are left
+/// `drive` gets each setpoint and returns what is to be seen at the end of its tick: [`Plant::advance`](crate::plant::Plant::advance),
+/// or [`Measured::ideal`] for a machine that is always where its setpoint is. The first `settling` ticks are left
 /// out of the maxima. Returns none where the path never ends.
 pub fn simulate(
     path: &Path,
     units: Units,
     settling: u64,
-    mut drive: impl FnMut(Position) -> Complex<f64>,
+    mut drive: impl FnMut(Position) -> Measured,
     mut look: impl FnMut(&Sample),
 ) -> Option<Outcome> {
     let mut gauge = Gauge::new(path, settling);
     let run = run(path, |tick, executor| {
-        let actual = drive(executor.setpoint());
-        look(&gauge.measure(tick, executor, actual));
+        let measured = drive(executor.setpoint());
+        look(&gauge.measure(tick, executor, &measured));
     })?;
     Some(gauge.outcome(&run, units))
-}
-
-/// The drive of a machine that is always where its setpoint is.
-pub fn ideal(setpoint: Position) -> Complex<f64> {
-    Complex::new(setpoint[0].to_mm(), setpoint[1].to_mm())
-}
-
-/// The drive of a plant: its encoders' x and y.
-pub fn drive(plant: &mut Plant) -> impl FnMut(Position) -> Complex<f64> {
-    |setpoint| {
-        let [x, y, _] = plant.advance(setpoint).encoder;
-        Complex::new(x, y)
-    }
 }
 
 /// All setpoints of a path, as the controller puts them out.

@@ -10,6 +10,7 @@ use shared::fixed::Position;
 use crate::job::Units;
 use crate::measure::ContourError;
 use crate::path::Path;
+use crate::plant::Measured;
 
 /// How many ticks at the start of a run with a plant are left out of the maxima: the drives start at rest while the path moves
 /// at once. The published runs entered the path at speed.
@@ -70,6 +71,10 @@ pub struct Outcome {
     pub rms_contour_error: f64,
     /// The largest distance of an axis from its setpoint: x, y.
     pub max_following_error: [f64; 2],
+    /// Ticks, after the settling ones, in which a drive was at its limit: x, y.
+    pub saturated_ticks: [u64; 2],
+    /// The most full steps that a stepping axis fell away from its field: x, y.
+    pub lost_steps: [u32; 2],
     /// Ticks at the start that the maxima leave out.
     pub settling_ticks: u64,
     /// One number for all setpoints.
@@ -94,6 +99,8 @@ struct Maxima {
     acceleration: f64,
     error: f64,
     following: [f64; 2],
+    saturated: [u64; 2],
+    lost_steps: [u32; 2],
 }
 
 impl<'a> Gauge<'a> {
@@ -109,8 +116,10 @@ impl<'a> Gauge<'a> {
         }
     }
 
-    /// Measures the tick after which the encoders stand at `actual`.
-    pub(super) fn measure(&mut self, tick: u64, executor: &Executor<f32>, actual: Complex<f64>) -> Sample {
+    /// Measures the tick at whose end the machine shows `measured`.
+    pub(super) fn measure(&mut self, tick: u64, executor: &Executor<f32>, measured: &Measured) -> Sample {
+        let [x, y, _] = measured.encoder;
+        let actual = Complex::new(x, y);
         let commanded = executor.setpoint();
         let setpoint = Complex::new(commanded[0].to_mm(), commanded[1].to_mm());
         let place = executor.place().unwrap_or(Place { piece: 0, tau: -0.5, rate: 0.0, point: Complex::ZERO });
@@ -136,7 +145,13 @@ impl<'a> Gauge<'a> {
             contour_error,
         };
         self.max.feed = self.max.feed.max(feed);
+        for (most, lost) in self.max.lost_steps.iter_mut().zip(measured.lost_steps) {
+            *most = (*most).max(lost.unsigned_abs());
+        }
         if tick > self.settling {
+            for (ticks, saturated) in self.max.saturated.iter_mut().zip(measured.saturated) {
+                *ticks += u64::from(saturated);
+            }
             let apart = setpoint - actual;
             self.counted += 1;
             self.square_sum += contour_error * contour_error;
@@ -180,6 +195,8 @@ impl<'a> Gauge<'a> {
             max_contour_error: length(self.max.error),
             rms_contour_error: length((self.square_sum / self.counted.max(1) as f64).sqrt()),
             max_following_error: self.max.following.map(length),
+            saturated_ticks: self.max.saturated,
+            lost_steps: self.max.lost_steps,
             settling_ticks: self.settling,
             setpoint_hash: format!("{:016x}", run.hash.value()),
         }
