@@ -10,7 +10,7 @@
 use crate::complex::Complex;
 use crate::error::PathError;
 use crate::feed::FeedLaw;
-use crate::fixed::{Fixed, Position};
+use crate::fixed::{Fixed, Position, REACH_MM};
 use crate::jet::Number;
 use crate::piece::{Piece, Shape};
 use crate::polynomial::{Polynomial, Sign, bernstein_product, sign};
@@ -141,12 +141,7 @@ impl<T: Real> ActivePiece<T> {
         };
         let mut active =
             Self { curve, law, origin: piece.origin, knots: [T::ZERO; 2], substeps: (1, T::ONE), last: piece.last };
-        if ![-T::HALF, T::ZERO, T::HALF].iter().all(|&tau| {
-            let (point, rate) = active.point_and_rate(tau);
-            point.is_finite() && rate.is_finite() && rate > T::ZERO
-        }) {
-            return Err(PathError::NotFinite);
-        }
+        active.check_points()?;
         active.knots = law.knots().map(|u| active.tau_at(u));
         active.substeps = active.choose_substeps(tick);
         Ok(active)
@@ -238,6 +233,24 @@ impl<T: Real> ActivePiece<T> {
         [x.offset_by(point.re), y.offset_by(point.im)]
     }
 
+    /// Refuses a piece that has no point or no rate somewhere, or leaves the machine's reach: what lies between these points
+    /// cannot leave the range of [`Fixed`], which is twice as wide.
+    fn check_points(&self) -> Result<(), PathError> {
+        const HALF_PARTS: i32 = 4;
+        let [x, y] = self.origin.map(|c| c.minus::<T>(Fixed(0)));
+        let reach = T::lit(REACH_MM);
+        for k in -HALF_PARTS..=HALF_PARTS {
+            let (point, rate) = self.point_and_rate(T::from_int(k) * T::lit(0.5 / f64::from(HALF_PARTS)));
+            if !(point.is_finite() && rate.is_finite() && rate > T::ZERO) {
+                return Err(PathError::NotFinite);
+            }
+            if (x + point.re).abs() > reach || (y + point.im).abs() > reach {
+                return Err(PathError::Reach);
+            }
+        }
+        Ok(())
+    }
+
     /// The parameter where the fraction is `u`: bisection, since u grows all along. Load time.
     fn tau_at(&self, u: T) -> T {
         if u <= T::ZERO {
@@ -290,6 +303,9 @@ fn activate_ph<T: Real>(preimage: [Complex<T>; 3], offset: T, contact: T, centre
     let [a, b, c] = preimage;
     if !(a.is_finite() && b.is_finite() && c.is_finite() && offset.is_finite()) {
         return Err(PathError::NotFinite);
+    }
+    if offset.abs() > T::lit(REACH_MM) {
+        return Err(PathError::Reach);
     }
     // sigma = |A|^2 + 2 Re(conj A B) tau + (|B|^2 + 2 Re(conj A C)) tau^2 + 2 Re(conj B C) tau^3 + |C|^2 tau^4, integrated.
     let arc = [

@@ -37,8 +37,8 @@ pub enum Sign {
 
 /// The sign over the whole of -1/2..=1/2 of the polynomial with these Bernstein coefficients.
 ///
-/// Coefficients of one sign, by more than their rounding, prove it; otherwise the interval is halved by de Casteljau's scheme, down to 2^-[`HALVINGS`] of
-/// it. Load time: at most 2 [`HALVINGS`] subdivisions near one zero, and a polynomial has few.
+/// Coefficients of one sign, by more than their rounding, prove it; otherwise the interval is halved by de Casteljau's scheme,
+/// down to 2^-[`HALVINGS`] of it. Load time: at most 2 [`HALVINGS`] subdivisions near one zero, and a polynomial has few.
 pub fn sign<T: Real, const N: usize>(bernstein: [T; N]) -> Sign {
     let end = bernstein.first().copied().unwrap_or(T::ZERO);
     let largest = bernstein.iter().fold(T::ZERO, |largest: T, b| largest.most(b.abs()));
