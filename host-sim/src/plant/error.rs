@@ -50,17 +50,20 @@ impl PlantError {
             Self::Form { place, .. } | Self::Value { place, .. } => *place,
         }
     }
+
+    /// The sentence without its place.
+    pub fn message(&self) -> String {
+        match self {
+            Self::Form { message, .. } => message.clone(),
+            Self::Value { key, found, needed, .. } => format!("{key} is {found}; it must be {needed}"),
+        }
+    }
 }
 
 impl fmt::Display for PlantError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Place { line, column } = self.place();
-        match self {
-            Self::Form { message, .. } => write!(f, "{line}:{column}: {message}"),
-            Self::Value { key, found, needed, .. } => {
-                write!(f, "{line}:{column}: {key} is {found}; it must be {needed}")
-            }
-        }
+        write!(f, "{line}:{column}: {}", self.message())
     }
 }
 
