@@ -58,21 +58,25 @@ impl Control {
     }
 
     /// One tick: from the encoders' counts to the commands of the drives. `stopped` gives up every motion.
+    ///
+    /// A directive takes a tick of its own, so that none does both: the path's first tick is the one after.
     #[inline(always)]
     pub fn tick(&mut self, counts: [i32; AXES], stopped: bool) -> [f32; AXES] {
         match self.directives.dequeue() {
-            None if !stopped => {}
+            None if !stopped => self.walk(),
             Some(Directive::Start(order)) if !stopped => self.start(order),
             _ => self.stop(),
         }
-        let moving = matches!(self.executor.state(), State::Run | State::Starved);
-        let setpoint = self.executor.tick(&mut self.pieces);
-        if moving {
-            self.hash.add(setpoint);
+        self.commands = self.command(self.executor.setpoint(), counts);
+        self.commands
+    }
+
+    #[inline(always)]
+    fn walk(&mut self) {
+        if matches!(self.executor.state(), State::Run | State::Starved) {
+            self.hash.add(self.executor.tick(&mut self.pieces));
             self.ticks = self.ticks.wrapping_add(1);
         }
-        self.commands = self.command(setpoint, counts);
-        self.commands
     }
 
     #[inline(always)]

@@ -18,7 +18,8 @@ const RAMP_TICKS: std::ops::Range<u32> = 40..72;
 /// Every figure.
 #[derive(Clone, Debug, Serialize)]
 pub struct Budget {
-    /// By kind of piece and order, such as `ph 1`: instructions per stage, and of the whole interrupt.
+    /// By kind of piece and order, such as `ph 1`: instructions per stage in the middle of a ramp; and of the whole
+    /// interrupt the median, the tick that crosses a node, and the most of all, those at rest and at the start among them.
     pub instructions: BTreeMap<String, BTreeMap<String, u32>>,
     /// The most stack of the interrupt, in bytes, with the frame that the processor stacks.
     pub stack_bytes: u32,
@@ -56,7 +57,10 @@ pub fn measure(image: &Image, mut progress: impl FnMut(&str)) -> Result<Budget, 
                 .map(|(stage, count)| (stage.to_owned(), count))
                 .collect();
             row.insert("median".to_owned(), median(ticks.iter().map(|tick| tick.instructions)));
-            row.insert("most".to_owned(), ticks.iter().map(|tick| tick.instructions).max().unwrap_or(0));
+            let node =
+                ticks.windows(2).find(|pair| pair[0].pieces != pair[1].pieces).map_or(0, |pair| pair[1].instructions);
+            row.insert("node".to_owned(), node);
+            row.insert("most".to_owned(), counted.seen.worst);
             instructions.insert(name, row);
             stack = stack.max(counted.seen.handler_stack);
         }

@@ -1,0 +1,236 @@
+//! `cargo xtask budget`: what the image costs, beside what it may cost.
+//!
+//! The figures stand in `budget.toml`. A figure that has grown by more than 5 % fails; one that has shrunk is for `--accept`. They
+//! belong to one compiler: under another they are shown, and growth is reported without failing. The bars always hold.
+
+use std::collections::BTreeMap;
+use std::fmt::Write as _;
+use std::path::PathBuf;
+
+use clap::Args;
+use serde::{Deserialize, Serialize};
+
+use crate::build::firmware;
+use crate::tools::{Failure, Outcome, board_cargo, check_board_compiler, compiler, output, root};
+
+/// The part by which a figure may grow unseen.
+const GROWTH: f64 = 0.05;
+
+/// Instructions by which one stage may grow unseen: the border between two stages is no sharper (`tests/board/src/stages.rs`).
+const STAGE_BLUR: u32 = 4;
+
+/// Instructions of curve, feed law and position on an offset PH piece, at most.
+const PIECE_BAR: u32 = 180;
+
+/// The stages that this bar is about: the point and the rate, the factor of the ramp, and the step of equation (22).
+const PIECE_STAGES: [&str; 3] = ["curve", "feed law", "interpolator"];
+
+/// Instructions of the whole interrupt at order 1, at most.
+const INTERRUPT_BAR: u32 = 800;
+
+/// Measure the image on the virtual board and compare it with budget.toml
+#[derive(Args)]
+#[command(after_help = "Example:\n  cargo xtask budget --accept")]
+pub struct Budget {
+    /// Write the figures into budget.toml
+    #[arg(long)]
+    accept: bool,
+    /// Write the figures as JSON; `-` is standard output
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
+}
+
+/// The figures of one image.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+struct Figures {
+    compiler: String,
+    stack_bytes: u32,
+    flash_bytes: u32,
+    ram_bytes: u32,
+    instructions: BTreeMap<String, BTreeMap<String, u32>>,
+    /// Of a measurement only: functions that the tick reaches and must not.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    forbidden: Vec<String>,
+    /// Of a measurement only: calls that cannot be followed.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    indirect: Vec<String>,
+    /// Of a measurement only: everything that the tick reaches.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    reached: Vec<String>,
+}
+
+impl Budget {
+    /// Measures, prints, and compares or accepts.
+    pub fn run(self) -> Outcome {
+        let figures = measure()?;
+        let quiet = self.json.as_ref().is_some_and(|path| path.as_os_str() == "-");
+        if let Some(path) = &self.json {
+            let text = serde_json::to_string_pretty(&figures).map_err(|error| Failure::new(error.to_string()))?;
+            if quiet {
+                println!("{text}");
+            } else {
+                std::fs::write(path, text).map_err(|error| Failure::new(format!("{}: {error}", path.display())))?;
+            }
+        }
+        if !quiet {
+            print!("{}", figures.table());
+        }
+        if self.accept {
+            write(&figures)?;
+        }
+        judge(&figures)
+    }
+}
+
+/// Measures the image, and compares it with what was accepted.
+pub fn check() -> Outcome {
+    let figures = measure()?;
+    print!("{}", figures.table());
+    judge(&figures)
+}
+
+fn measure() -> Outcome<Figures> {
+    let image = firmware()?;
+    check_board_compiler()?;
+    let text = output(board_cargo(&["run", "--release", "--quiet"])?.args(["--", "budget", "--elf"]).arg(image))?;
+    let mut figures: Figures =
+        serde_json::from_str(&text).map_err(|error| Failure::new(format!("the virtual board's figures: {error}")))?;
+    figures.compiler = compiler()?.name;
+    Ok(figures)
+}
+
+fn file() -> PathBuf {
+    root().join("budget.toml")
+}
+
+fn write(figures: &Figures) -> Outcome {
+    std::fs::write(file(), figures.toml()).map_err(|error| Failure::new(format!("budget.toml: {error}")))
+}
+
+fn judge(figures: &Figures) -> Outcome {
+    let mut faults = figures.broken_bars();
+    let text = std::fs::read_to_string(file())
+        .map_err(|error| Failure::new(format!("budget.toml: {error}; `cargo xtask budget --accept` writes it")))?;
+    let accepted: Figures = toml::from_str(&text).map_err(|error| Failure::new(format!("budget.toml: {error}")))?;
+    let growth = figures.growth_over(&accepted);
+    if accepted.compiler == figures.compiler {
+        faults.extend(growth);
+    } else {
+        println!(
+            "budget.toml was written with {}, and this is {}: growth is shown only.",
+            accepted.compiler, figures.compiler
+        );
+        growth.iter().for_each(|line| println!("  {line}"));
+    }
+    if faults.is_empty() {
+        return Ok(());
+    }
+    Err(Failure::new(format!("the image costs more than it may:\n  {}", faults.join("\n  "))))
+}
+
+impl Figures {
+    /// A table for people.
+    fn table(&self) -> String {
+        let mut text = String::new();
+        let columns: Vec<&str> =
+            ["executor", "interpolator", "feed law", "curve", "servo", "rest", "median", "start", "node", "most"]
+                .into_iter()
+                .filter(|column| self.instructions.values().any(|row| row.contains_key(*column)))
+                .collect();
+        let _ = write!(text, "{:<12}", "instructions");
+        columns.iter().for_each(|column| {
+            let _ = write!(text, "{column:>13}");
+        });
+        text.push('\n');
+        for (name, row) in &self.instructions {
+            let _ = write!(text, "{name:<12}");
+            for column in &columns {
+                let _ = write!(text, "{:>13}", row.get(*column).map_or_else(String::new, u32::to_string));
+            }
+            text.push('\n');
+        }
+        let _ = writeln!(
+            text,
+            "the interrupt's stack {} bytes, flash {} bytes, RAM {} bytes",
+            self.stack_bytes, self.flash_bytes, self.ram_bytes
+        );
+        let _ = writeln!(
+            text,
+            "the tick reaches {} functions, {} of them forbidden",
+            self.reached.len(),
+            self.forbidden.len()
+        );
+        text
+    }
+
+    /// What is written into `budget.toml`.
+    fn toml(&self) -> String {
+        let mut text = String::from(
+            "# What the firmware costs, written by `cargo xtask budget --accept`. Instructions are exact counts of the image on the virtual\n\
+             # board: per stage in the middle of a ramp, `median` and `most` of the whole interrupt; by kind of piece and order.\n",
+        );
+        let _ = writeln!(text, "compiler = {:?}", self.compiler);
+        for (name, bytes) in [("stack", self.stack_bytes), ("flash", self.flash_bytes), ("ram", self.ram_bytes)] {
+            let _ = writeln!(text, "{name}_bytes = {bytes}");
+        }
+        text.push_str("\n[instructions]\n");
+        for (name, row) in &self.instructions {
+            let row: Vec<String> = row.iter().map(|(stage, count)| format!("{stage:?} = {count}")).collect();
+            let _ = writeln!(text, "{name:?} = {{ {} }}", row.join(", "));
+        }
+        text
+    }
+
+    /// The bars of the project that this image does not keep.
+    fn broken_bars(&self) -> Vec<String> {
+        let mut faults = Vec::new();
+        let row = self.instructions.get("ph 1");
+        let piece = row.map_or(u32::MAX, |row| PIECE_STAGES.iter().filter_map(|stage| row.get(*stage)).sum());
+        if piece > PIECE_BAR {
+            faults.push(format!(
+                "curve, feed law and position of an offset PH piece take {piece} instructions; {PIECE_BAR} are allowed"
+            ));
+        }
+        for kind in ["ph 1", "line 1", "arc 1"] {
+            let most = self.instructions.get(kind).and_then(|row| row.get("most")).copied().unwrap_or(u32::MAX);
+            if most > INTERRUPT_BAR {
+                faults.push(format!("the interrupt takes {most} instructions on {kind}; {INTERRUPT_BAR} are allowed"));
+            }
+        }
+        faults.extend(self.forbidden.iter().map(|name| format!("the tick can reach {name}")));
+        faults.extend(self.indirect.iter().map(|call| format!("the tick calls through a register, in {call}")));
+        faults
+    }
+
+    /// What has grown by too much since `accepted`.
+    fn growth_over(&self, accepted: &Self) -> Vec<String> {
+        let mut faults = Vec::new();
+        let mut compare = |name: String, before: Option<u32>, now: u32, blur: u32| {
+            let Some(before) = before else {
+                faults.push(format!("{name} is new; accept it"));
+                return;
+            };
+            let allowed = (f64::from(before) * (1.0 + GROWTH)) as u32;
+            if now > allowed.max(before + blur) {
+                faults.push(format!("{name} has grown from {before} to {now}"));
+            }
+        };
+        for (name, row) in &self.instructions {
+            let before = accepted.instructions.get(name);
+            for (stage, &now) in row {
+                let is_whole = matches!(stage.as_str(), "median" | "most" | "start" | "node");
+                let blur = if is_whole { 0 } else { STAGE_BLUR };
+                compare(format!("{name}, {stage}"), before.and_then(|row| row.get(stage)).copied(), now, blur);
+            }
+        }
+        for (name, before, now) in [
+            ("the interrupt's stack", accepted.stack_bytes, self.stack_bytes),
+            ("flash", accepted.flash_bytes, self.flash_bytes),
+            ("RAM", accepted.ram_bytes, self.ram_bytes),
+        ] {
+            compare(name.to_owned(), Some(before), now, 0);
+        }
+        faults
+    }
+}
