@@ -380,6 +380,36 @@ proptest! {
     }
 }
 
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 3000, failure_persistence: None, ..ProptestConfig::default() })]
+
+    /// Close to a cusp of the offset, or to a standstill of the curve, the loader refuses or the tick is sound.
+    #[test]
+    fn near_cusps_are_refused_or_borne(
+        numbers in usual_numbers(), ramps: [bool; 2], at in -0.5..0.5_f32, power in -8.0..-1.0_f32, below: bool, still: bool,
+    ) {
+        let mut n = numbers;
+        let near = 10_f32.powf(power) * if below { -1.0 } else { 1.0 };
+        if still {
+            // w(at) = near (1 + i).
+            n[0] = near - at * (n[2] + at * n[4]);
+            n[1] = near - at * (n[3] + at * n[5]);
+        } else {
+            // d = -(1 + near)/kappa(at), kappa = 2 Im(conj w w')/|w|^4.
+            let w = [n[0] + at * (n[2] + at * n[4]), n[1] + at * (n[3] + at * n[5])];
+            let slope = [n[2] + 2.0 * at * n[4], n[3] + 2.0 * at * n[5]];
+            let kappa = 2.0 * (w[0] * slope[1] - w[1] * slope[0]) / (w[0] * w[0] + w[1] * w[1]).powi(2);
+            n[6] = -(1.0 + near) / kappa;
+        }
+        let (header, piece) = assemble(0, &n, ramps, [0; 2]);
+        if let Some(active) = load_alone(&header, piece) {
+            for order in ORDERS {
+                bear(active, order, 300)?;
+            }
+        }
+    }
+}
+
 /// The pieces of the property tests above are not all refused: of usual ones most are taken.
 #[test]
 fn usual_pieces_are_mostly_accepted() {
