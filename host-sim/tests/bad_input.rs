@@ -148,6 +148,17 @@ fn faulty_options_name_themselves() {
     }
 }
 
+/// A fault in a plant is told as one in a job is.
+#[test]
+fn a_faulty_plant_has_its_place() {
+    let mill = include_str!("../../examples/farouki2018-mill.toml");
+    let plant = file("plant.toml", &mill.replace("lead = 5.08", "lead = -5.08"));
+    let error = refused("plant-job", GOOD, &["--plant", plant.to_str().unwrap()]);
+    let line = mill.lines().position(|line| line.starts_with("lead")).unwrap() + 1;
+    assert!(error.contains(&format!("plant.toml:{line}:")) && error.contains("-5.08"), "{error:?}");
+    assert!(!error.trim_end().ends_with(':'), "{error:?}");
+}
+
 #[test]
 fn a_missing_file_and_a_foreign_one_are_named() {
     let output = simulate(std::path::Path::new("no-such-file.toml"), &[]);

@@ -85,9 +85,9 @@ fn read_plant(name: &str) -> Result<Plant, InputError> {
     }
     let source = Source::read(name)?;
     Plant::from_toml(&source.text, f64::from(shared::TICK)).map_err(|error| InputError {
-        place: format!("{name}:{error}"),
-        position: None,
-        message: String::new(),
+        place: name.to_string(),
+        position: Some((error.place().line, error.place().column)),
+        message: error.message(),
     })
 }
 
