@@ -1,4 +1,5 @@
 //! Feeds and pieces at both ends of what a machine may be asked for.
+#![allow(clippy::unwrap_used, reason = "clippy.toml allows it in tests, which leaves out their helpers")]
 
 use shared::curve::Segment;
 use shared::executor::NODES_PER_TICK;

@@ -1,4 +1,5 @@
 //! What nodes do to the motion: nothing; what the end of the queue does: stop there.
+#![allow(clippy::unwrap_used, reason = "clippy.toml allows it in tests, which leaves out their helpers")]
 
 use shared::active::ActivePiece;
 use shared::complex::Complex;

@@ -1,4 +1,5 @@
 //! What the orders of the interpolator promise: 1, 2 and 3 their power of the tick, "exact" the integral itself.
+#![allow(clippy::unwrap_used, reason = "clippy.toml allows it in tests, which leaves out their helpers")]
 
 use proptest::prelude::*;
 use shared::feed::Ramp;

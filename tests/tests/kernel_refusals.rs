@@ -1,4 +1,5 @@
 //! What the loader refuses; and that the tick bears whatever it takes.
+#![allow(clippy::unwrap_used, reason = "clippy.toml allows it in tests, which leaves out their helpers")]
 
 use proptest::prelude::*;
 use shared::active::ActivePiece;

@@ -1,4 +1,5 @@
 //! The time of a piece against the published closed form.
+#![allow(clippy::unwrap_used, reason = "clippy.toml allows it in tests, which leaves out their helpers")]
 
 use shared::piece::Order;
 use tests::draft::{Draft, curves};

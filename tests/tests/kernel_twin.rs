@@ -1,4 +1,5 @@
 //! The f32 tick against its f64 twin and against the exact offset path.
+#![allow(clippy::unwrap_used, reason = "clippy.toml allows it in tests, which leaves out their helpers")]
 
 use proptest::prelude::*;
 use shared::complex::Complex;
