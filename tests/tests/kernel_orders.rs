@@ -4,7 +4,7 @@
 use proptest::prelude::*;
 use shared::feed::Ramp;
 use shared::piece::Order;
-use tests::draft::{Draft, curves, ph};
+use tests::draft::{Draft, arc, curves, line, ph};
 use tests::run::{TICK, run, run_at};
 
 /// The root mean square over the curve of the feed error: by how much the time that (21) gives for a tick's step differs from
@@ -98,7 +98,7 @@ proptest! {
 #[test]
 fn exact_is_exact_to_rounding_on_a_usual_piece() {
     let mut worst = 0.0_f64;
-    for segment in curves(100.0) {
+    for segment in curves(100.0).into_iter().chain([line(60.0, -80.0), arc(0.0, 50.0, -2.0)]) {
         for weight in [0.0, 0.5, 1.0] {
             for factor in [1.0, 0.25, 0.01] {
                 worst = worst.max(integration_error(Draft::whole(segment, 2.0, 84.0).ramped(0.25, factor), weight));
