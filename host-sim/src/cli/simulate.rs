@@ -36,6 +36,9 @@ pub struct Simulate {
     /// Write pictures and tables as one HTML file
     #[arg(long, value_name = "FILE.html")]
     report: Option<String>,
+    /// Write one picture of the path, coloured by its feed
+    #[arg(long, value_name = "FILE.svg")]
+    picture: Option<String>,
 }
 
 impl Simulate {
@@ -47,6 +50,10 @@ impl Simulate {
         if let Some(name) = &self.report {
             let html = report::simulation(&job, &path, &outcome, &samples).map_err(|error| failed(name, error))?;
             create(name)?.write_all(html.as_bytes()).map_err(|e| failed(name, e))?;
+        }
+        if let Some(name) = &self.picture {
+            let svg = report::picture(&job, &path, &samples).map_err(|error| failed(name, error))?;
+            create(name)?.write_all(svg.as_bytes()).map_err(|e| failed(name, e))?;
         }
         if let Some(name) = &self.json {
             json(name, &outcome)?;
@@ -70,7 +77,7 @@ impl Simulate {
         let bar = super::progress(host_sim::measure::exact_time(path));
         let mut samples = Vec::new();
         let mut written = Ok(());
-        let keep = self.report.is_some();
+        let keep = self.report.is_some() || self.picture.is_some();
         let look = |sample: &Sample| {
             if sample.tick.is_multiple_of(1024) {
                 bar.set_position(sample.tick / 1024);

@@ -1,0 +1,60 @@
+//! Results as pictures and tables, in one self-contained HTML file.
+//!
+//! | module | what |
+//! | --- | --- |
+//! | `simulation`, `reproduction` | the two reports: what stands in which order, and the sentences between |
+//! | `figures` | one function for each kind of picture |
+//! | `tables` | published tables beside what came out here |
+//! | `plane`, `chart` | coordinates: the plane with one scale on both axes; strips over one time axis |
+//! | `geometry`, `series` | the points to draw: offsets and contact points; thinned series and round ticks |
+//! | `canvas`, `page`, `style` | marks as SVG, text as HTML, colours and sizes |
+
+mod canvas;
+mod chart;
+mod figures;
+mod geometry;
+mod page;
+mod plane;
+mod reproduction;
+mod series;
+mod simulation;
+mod style;
+mod tables;
+
+use std::fmt;
+
+use crate::job::Job;
+use crate::path::Path;
+use crate::simulate::Sample;
+
+pub use reproduction::reproduction;
+pub use simulation::simulation;
+
+/// Why there is no report.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ReportError {
+    /// The run kept no samples.
+    NoSamples,
+    /// The drawing backend refused a mark.
+    Drawing,
+}
+
+impl fmt::Display for ReportError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::NoSamples => "there is nothing to draw: the run kept none of its ticks",
+            Self::Drawing => "a picture could not be drawn",
+        })
+    }
+}
+
+impl std::error::Error for ReportError {}
+
+/// One picture as an SVG file: the path coloured by its centre feed, with the contour and the corners.
+pub fn picture(job: &Job, path: &Path, samples: &[Sample]) -> Result<String, ReportError> {
+    if samples.is_empty() {
+        return Err(ReportError::NoSamples);
+    }
+    let most = figures::scale_end(job.units, samples.iter().map(|sample| sample.feed));
+    Ok(figures::feed_along_path(job, path, samples, most)?.file())
+}
