@@ -1,0 +1,21 @@
+//! What the tests of the target share.
+
+use std::path::{Path, PathBuf};
+
+use board::image::Image;
+
+/// The top-level directory.
+pub fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+}
+
+/// The image that is flashed, as `cargo xtask build` left it.
+pub fn image() -> Image {
+    let target = std::env::var_os("HODOGRAPH_TARGET").map_or_else(|| root().join("target"), PathBuf::from);
+    let elf = target.join("thumbv7em-none-eabihf/firmware/firmware");
+    assert!(
+        elf.is_file(),
+        "there is no image yet; `cargo xtask build` makes it, and `cargo xtask test` runs these tests"
+    );
+    Image::read(&elf).unwrap()
+}
