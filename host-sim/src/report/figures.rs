@@ -153,6 +153,9 @@ pub struct Series<'a> {
     pub machine: bool,
 }
 
+/// A line of a chart: the axis it is about, if it is about one, its stroke, and what it takes from a sample.
+type Line = (&'static str, Stroke, Box<dyn Fn(&Sample) -> f64>);
+
 /// A chart of one quantity over time, one strip for each run (two, x and y, of the following error).
 pub fn over_time(quantity: Quantity, units: Units, runs: &[Series<'_>], title: &str) -> Result<Picture, ReportError> {
     let duration = runs.iter().filter_map(|run| run.samples.last()).map(seconds).fold(0.0, f64::max);
@@ -171,7 +174,7 @@ pub fn over_time(quantity: Quantity, units: Units, runs: &[Series<'_>], title: &
     };
     let mut strips = Vec::new();
     for run in runs {
-        let lines: Vec<(&str, Stroke, Box<dyn Fn(&Sample) -> f64>)> = match quantity {
+        let lines: Vec<Line> = match quantity {
             Quantity::Feed if run.machine => vec![
                 ("", COMMANDED, Box::new(move |s| per_minute(units, s.feed))),
                 ("", MEASURED, Box::new(move |s| per_minute(units, s.speed))),

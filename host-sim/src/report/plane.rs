@@ -22,7 +22,7 @@ const FLATTEST: f64 = 150.0;
 /// Shades of a coloured path; neighbours cannot be told apart.
 const SHADES: f64 = 64.0;
 /// Points nearer to each other than this, in units of the picture, are drawn as one.
-const FINE: f64 = 0.4;
+const FINE: f64 = 1.0;
 
 /// From mm to places on the sheet.
 #[derive(Clone, Copy, Debug)]
