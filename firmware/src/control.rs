@@ -26,8 +26,10 @@ pub type Directives = Queue<Directive, DIRECTIVES>;
 /// What the link asks of the tick.
 #[derive(Clone, Copy, Debug)]
 pub enum Directive {
-    /// Begin the path whose pieces stand in the queue.
-    Start(Order),
+    /// Begin the path whose pieces stand in the queue, at its first point.
+    ///
+    /// There is no homing yet: the machine is taken to stand at that point, wherever it is, and nothing jumps.
+    Start(Order, [Fixed; 2]),
     /// Stay where you are, and forget the pieces in the queue.
     Stop,
 }
@@ -64,7 +66,7 @@ impl Control {
     pub fn tick(&mut self, counts: [i32; AXES], stopped: bool) -> [f32; AXES] {
         match self.directives.dequeue() {
             None if !stopped => self.walk(),
-            Some(Directive::Start(order)) if !stopped => self.start(order),
+            Some(Directive::Start(order, point)) if !stopped => self.start(order, point, counts),
             _ => self.stop(),
         }
         self.commands = self.command(self.executor.setpoint(), counts);
@@ -91,8 +93,13 @@ impl Control {
 
     #[cold]
     #[inline(never)]
-    fn start(&mut self, order: Order) {
+    fn start(&mut self, order: Order, [x, y]: [Fixed; 2], counts: [i32; AXES]) {
+        let position = [x, y, Fixed(0)];
+        self.executor.stand_at(position);
         self.executor.start(order);
+        for ((servo, state), (coordinate, count)) in self.servos.iter_mut().zip(position.into_iter().zip(counts)) {
+            *state = servo.at_rest(coordinate, count);
+        }
         self.hash = SetpointHash::new();
         self.ticks = 0;
     }

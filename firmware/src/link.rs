@@ -175,10 +175,10 @@ impl Link {
             Job::None => Err(Refusal::NoJob),
             Job::Running(_) => Err(Refusal::Busy),
             Job::Loading(..) if MAILBOX.is_stopped() => Err(Refusal::Stopped),
-            Job::Loading(..) if self.pieces.is_empty() => Err(Refusal::Path(PathError::Empty)),
             Job::Loading(loader, order) => {
+                let Some(start) = loader.start() else { return Err(Refusal::Path(PathError::Empty)) };
                 defmt::info!("run");
-                self.direct(Directive::Start(order));
+                self.direct(Directive::Start(order, start));
                 self.job = Job::Running(loader);
                 Ok(())
             }

@@ -29,6 +29,8 @@ pub struct ActivePiece<T> {
     knots: [T; 2],
     /// Into how many equal parts order "exact" divides a tick on this piece, and the inverse of that number.
     substeps: (u32, T),
+    /// The rate of (21) at the start, which a tick that crosses a node needs besides that of its end.
+    start_rate: T,
     last: Option<Position>,
 }
 
@@ -139,11 +141,19 @@ impl<T: Real> ActivePiece<T> {
                 Curve::Arc { radius, sweep, base: (contact + centre / ratio) / length }
             }
         };
-        let mut active =
-            Self { curve, law, origin: piece.origin, knots: [T::ZERO; 2], substeps: (1, T::ONE), last: piece.last };
+        let mut active = Self {
+            curve,
+            law,
+            origin: piece.origin,
+            knots: [T::ZERO; 2],
+            substeps: (1, T::ONE),
+            start_rate: T::ZERO,
+            last: piece.last,
+        };
         active.check_points()?;
         active.knots = law.knots().map(|u| active.tau_at(u));
         active.substeps = active.choose_substeps(tick);
+        active.start_rate = active.rate(-T::HALF);
         Ok(active)
     }
 
@@ -209,6 +219,12 @@ impl<T: Real> ActivePiece<T> {
     /// The parameters tau between which the rate is one smooth function.
     pub fn knots(&self) -> [T; 2] {
         self.knots
+    }
+
+    /// The rate of (21) at the start of the piece, in 1/s.
+    #[inline(always)]
+    pub fn start_rate(&self) -> T {
+        self.start_rate
     }
 
     /// Where the local frame stands.

@@ -16,14 +16,19 @@ pub const NODES_PER_TICK: u32 = 16;
 
 /// Where the tick gets its pieces from: a queue's consumer on the controller, an iterator in the simulator.
 pub trait Pieces<T> {
-    /// The next piece of the path, if it is there.
-    fn next_piece(&mut self) -> Option<ActivePiece<T>>;
+    /// Puts the next piece of the path into `place`, or leaves it alone and returns false where there is none. In place, because
+    /// a piece is large beside the rest of a tick.
+    fn next_piece(&mut self, place: &mut Option<ActivePiece<T>>) -> bool;
 }
 
-impl<T> Pieces<T> for heapless::spsc::Consumer<'_, ActivePiece<T>> {
+impl<T: Copy> Pieces<T> for heapless::spsc::Consumer<'_, ActivePiece<T>> {
     #[inline(always)]
-    fn next_piece(&mut self) -> Option<ActivePiece<T>> {
-        self.dequeue()
+    fn next_piece(&mut self, place: &mut Option<ActivePiece<T>>) -> bool {
+        let Some(next) = self.peek() else { return false };
+        *place = Some(*next);
+        // A copy that nobody takes is none.
+        let _ = self.dequeue();
+        true
     }
 }
 
@@ -86,6 +91,11 @@ impl<T: Real> Executor<T> {
         }
     }
 
+    /// Takes the machine to stand at `position` from now on: where a path is about to begin.
+    pub fn stand_at(&mut self, position: Position) {
+        *self = Self::new(self.tick, position);
+    }
+
     /// Begins a path: the next tick takes its first piece.
     pub fn start(&mut self, order: Order) {
         *self = Self { order, state: State::Run, ..Self::new(self.tick, self.setpoint) };
@@ -136,7 +146,7 @@ impl<T: Real> Executor<T> {
     #[inline(never)]
     fn cross_nodes(&mut self, pieces: &mut impl Pieces<T>, mut left: T) {
         for _ in 0..NODES_PER_TICK {
-            if let Some([x, y, _]) = self.active.and_then(|piece| piece.last()) {
+            if let Some([x, y, _]) = self.active.as_ref().and_then(ActivePiece::last) {
                 // Pieces are plane: an axis that they do not move stays where it is to the end.
                 self.setpoint = [x, y, self.setpoint[2]];
                 self.spare = left;
@@ -145,17 +155,16 @@ impl<T: Real> Executor<T> {
                 self.rate = T::ZERO;
                 return;
             }
-            let Some(next) = pieces.next_piece() else {
+            if !pieces.next_piece(&mut self.active) {
                 self.tau = Accumulator::new(T::HALF);
                 self.state = State::Starved;
                 return;
-            };
+            }
+            let Some(piece) = &self.active else { return };
             self.tau = Accumulator::new(-T::HALF);
-            let outcome = advance(&next, &mut self.tau, next.rate(-T::HALF), self.order, left);
-            self.active = Some(next);
             self.entered = self.entered.wrapping_add(1);
             self.state = State::Run;
-            match outcome {
+            match advance(piece, &mut self.tau, piece.start_rate(), self.order, left) {
                 None => return,
                 Some(rest) => left = rest,
             }

@@ -60,6 +60,11 @@ impl<T: Real> Loader<T> {
         Ok(active)
     }
 
+    /// Where the path starts; none before its first piece.
+    pub fn start(&self) -> Option<[Fixed; 2]> {
+        self.start
+    }
+
     /// Whether the last piece of the path has been loaded.
     pub fn is_finished(&self) -> bool {
         self.finished

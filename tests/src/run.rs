@@ -43,10 +43,11 @@ pub struct Feeder<I> {
 }
 
 impl<T, I: Iterator<Item = ActivePiece<T>>> Pieces<T> for Feeder<I> {
-    fn next_piece(&mut self) -> Option<ActivePiece<T>> {
-        let next = self.rest.next();
-        self.taken += usize::from(next.is_some());
-        next
+    fn next_piece(&mut self, place: &mut Option<ActivePiece<T>>) -> bool {
+        let Some(next) = self.rest.next() else { return false };
+        *place = Some(next);
+        self.taken += 1;
+        true
     }
 }
 

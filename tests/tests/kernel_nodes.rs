@@ -118,8 +118,12 @@ struct Valve {
 }
 
 impl Pieces<f32> for Valve {
-    fn next_piece(&mut self) -> Option<ActivePiece<f32>> {
-        (self.open && !self.pieces.is_empty()).then(|| self.pieces.remove(0))
+    fn next_piece(&mut self, place: &mut Option<ActivePiece<f32>>) -> bool {
+        let flows = self.open && !self.pieces.is_empty();
+        if flows {
+            *place = Some(self.pieces.remove(0));
+        }
+        flows
     }
 }
 

@@ -31,8 +31,11 @@ impl<T: Real, I: Iterator<Item = Piece<T>>> Feeder<T, I> {
 }
 
 impl<T: Real, I: Iterator<Item = Piece<T>>> Pieces<T> for Feeder<T, I> {
-    fn next_piece(&mut self) -> Option<ActivePiece<T>> {
-        self.loader.load(&self.pieces.next()?).ok()
+    fn next_piece(&mut self, place: &mut Option<ActivePiece<T>>) -> bool {
+        let next = self.pieces.next().and_then(|piece| self.loader.load(&piece).ok());
+        let found = next.is_some();
+        *place = next.or(*place);
+        found
     }
 }
 
