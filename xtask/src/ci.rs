@@ -75,12 +75,9 @@ fn strict(command: &mut Command) -> &mut Command {
 fn deny(manifest: &Path) -> Outcome {
     let tool = cargo_deny()?;
     let config = root().join("deny.toml");
-    run(Command::new(tool)
-        .arg("--manifest-path")
-        .arg(manifest)
-        .args(["check", "--config"])
-        .arg(config)
-        .args(["bans", "licenses", "sources"]))
+    let mut check = Command::new(tool);
+    check.arg("--manifest-path").arg(manifest).arg("--config").arg(config);
+    run(check.args(["check", "bans", "licenses", "sources"]))
 }
 
 /// Where cargo-deny is: on the path, or in the target folder, where it is installed if it is missing.

@@ -172,7 +172,7 @@ impl Probe {
     /// Paints the stack below the interrupted task, where nothing is alive: before each of the first interrupts, where a path
     /// begins, and then before some, since it takes longer than the tick itself.
     fn paint(&mut self, host: &mut dyn Host) {
-        let wanted = self.seen.interrupts % PAINT_EVERY == 0 || self.seen.ticks.len() < 8;
+        let wanted = self.seen.interrupts.is_multiple_of(PAINT_EVERY) || self.seen.ticks.len() < 8;
         self.stack_pointer = if wanted { stack_pointer(host, self.entry, &self.stack) } else { None };
         for address in self.painted() {
             // The stack is RAM; a write there cannot fail.
