@@ -6,7 +6,7 @@
 //! | module | what |
 //! | --- | --- |
 //! | [`image`] | the linked image: symbols, code, the interrupt's first instruction and its ends, every call |
-//! | [`line`] | the far end of the serial line: whoever speaks to the controller |
+//! | [`line`](mod@line) | the far end of the serial line: whoever speaks to the controller |
 //! | [`probe`] | counts instructions of each tick, reads its setpoint in RAM, measures its stack |
 //! | [`run`](mod@run) | one image, one conversation, until it ends |
 //! | [`stages`] | which source file each executed instruction came from |
