@@ -32,7 +32,7 @@ fn assert_within(what: &str, cells: &Cells, expected: &Cells, relative: f64) {
     }
 }
 
-fn table<'a>(result: &'a Reproduction, number: usize) -> &'a Table {
+fn table(result: &Reproduction, number: usize) -> &Table {
     &result.tables[number - 1]
 }
 
