@@ -36,7 +36,7 @@ pub fn reproduction(result: &Reproduction) -> Result<String, ReportError> {
         Layout::Pair,
         "As the paper's figure 1. First the contour C and its untrimmed offset, joined by arcs about the nodes; it crosses \
          itself in loops at the concave nodes and where C bends more sharply than the tool. Then the trimmed offset, the path \
-         of the tool's centre. Rings mark the trim points, at which the tangent breaks and the feed is reduced to f\u{b7}V.",
+         of the tool's centre. Rings mark the trim points, at which the tangent breaks and the factor f reduces the feed.",
     );
     spacings(&mut page, result)?;
     feeds(&mut page, result)?;
@@ -184,7 +184,7 @@ fn over_the_path(page: &mut Page, result: &Reproduction) -> Result<(), ReportErr
         (
             Quantity::Feed,
             "Centre feed",
-            " Broad the commanded feed, on it the measured one; at trim points it falls to f\u{b7}V.",
+            " Broad the commanded feed, on it the measured one; at trim points the factor f reduces it.",
         ),
         (
             Quantity::Acceleration,

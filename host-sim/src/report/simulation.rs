@@ -34,8 +34,7 @@ pub fn simulation(job: &Job, path: &Path, outcome: &Outcome, samples: &[Sample])
     page.figure(
         &[feed_along_path(job, path, samples, most)?],
         Layout::Single,
-        "The way of the tool's centre in the colour of its commanded feed: dark is slow, light is fast. At corners the \
-         feed falls to the reduction f; where the contour is convex the centre must outrun the contact point, the more so \
+        "The way of the tool's centre in the colour of its commanded feed: dark is slow, light is fast. At corners the factor f reduces it; where the contour is convex the centre must outrun the contact point, the more so \
          the smaller w.",
     );
     if let Some(detail) = Detail::find(path).filter(|_| job.offset != 0.0) {
