@@ -24,6 +24,12 @@ pub fn json(name: &str, result: &impl Serialize) -> Result<(), Failure> {
     writeln!(out).and_then(|()| out.flush()).map_err(|e| failed(name, e))
 }
 
+/// Writes `bytes` to `name`, to the last one.
+pub fn write(name: &str, bytes: &[u8]) -> Result<(), Failure> {
+    let mut out = create(name)?;
+    out.write_all(bytes).and_then(|()| out.flush()).map_err(|e| failed(name, e))
+}
+
 /// The failure of a write that had begun.
 pub fn failed(name: &str, error: impl std::fmt::Display) -> Failure {
     Failure::Run(format!("{name}: {error}"))

@@ -1,13 +1,11 @@
 //! `hodograph prepare`: the pieces of a job as the controller gets them, for whoever sends them.
 
-use std::io::Write;
-
 use clap::Args;
 use host_sim::prepare::prepare;
 
 use super::Failure;
 use super::motion::Motion;
-use super::output::{create, failed};
+use super::output::{failed, write};
 
 /// Write a job's pieces in the form in which they go over the link
 #[derive(Args)]
@@ -25,6 +23,6 @@ impl Prepare {
     pub fn run(self) -> Result<(), Failure> {
         let (_, path) = self.motion.path()?;
         let bytes = prepare(&path).map_err(|error| failed(&self.output, error))?;
-        create(&self.output)?.write_all(&bytes).map_err(|e| failed(&self.output, e))
+        write(&self.output, &bytes)
     }
 }

@@ -1,13 +1,11 @@
 //! `hodograph reproduce`: a published experiment beside its published figures.
 
-use std::io::Write;
-
 use clap::{Args, ValueEnum};
 use host_sim::report;
 use host_sim::reproduce::farouki2018::{self, REDUCTIONS, Reproduction, Table, WEIGHTS};
 
 use super::Failure;
-use super::output::{create, failed, json};
+use super::output::{failed, json, write};
 
 /// Run a published experiment again and lay it beside its published figures
 #[derive(Args)]
@@ -39,7 +37,7 @@ impl Reproduce {
         bar.finish_and_clear();
         if let Some(name) = &self.report {
             let html = report::reproduction(&result).map_err(|error| failed(name, error))?;
-            create(name)?.write_all(html.as_bytes()).map_err(|e| failed(name, e))?;
+            write(name, html.as_bytes())?;
         }
         if let Some(name) = &self.json {
             json(name, &result)?;

@@ -11,7 +11,7 @@ use host_sim::simulate::{Outcome, SETTLING_TICKS, Sample, simulate};
 
 use super::Failure;
 use super::motion::Motion;
-use super::output::{create, failed, json};
+use super::output::{create, failed, json, write};
 
 /// Run a job through the controller's tick, on a simulated machine or an ideal one
 #[derive(Args)]
@@ -49,11 +49,11 @@ impl Simulate {
         let (outcome, samples) = self.simulate(&job, &path, plant)?;
         if let Some(name) = &self.report {
             let html = report::simulation(&job, &path, &outcome, &samples).map_err(|error| failed(name, error))?;
-            create(name)?.write_all(html.as_bytes()).map_err(|e| failed(name, e))?;
+            write(name, html.as_bytes())?;
         }
         if let Some(name) = &self.picture {
             let svg = report::picture(&job, &path, &samples).map_err(|error| failed(name, error))?;
-            create(name)?.write_all(svg.as_bytes()).map_err(|e| failed(name, e))?;
+            write(name, svg.as_bytes())?;
         }
         if let Some(name) = &self.json {
             json(name, &outcome)?;

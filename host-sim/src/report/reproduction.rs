@@ -101,7 +101,7 @@ fn limits(page: &mut Page, result: &Reproduction) {
 /// Why the cells of each table differ.
 const REASONS: [&str; 4] = [
     "What is left is the fit of the contour: a time hardly depends on the machine.",
-    "Errors of a few thousandths of an inch hang on dry friction, play and noise of the one machine, which the drive here lacks. The \
+    "Errors of a few thousandths of an inch may hang on dry friction, play and noise of the one machine, which the drive here lacks. The \
      large ones come from saturation: at w = 0 with f = 1 the drive cannot follow for a moment, whatever its other numbers.",
     "For w below 1 the feed here rises above the published one, as the commanded feed does already: the paper's mill fell short \
      of its command, or its contour bends less where the centre is fastest. At w = 1 the command never exceeds 200 in/min, and \
