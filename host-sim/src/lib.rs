@@ -5,6 +5,8 @@
 //! | module | what |
 //! | --- | --- |
 //! | [`input`] | files as they are read, and errors that name file, line and column |
+//! | [`contour`] | the part's curve: segments and nodes |
+//! | [`offset`] | the exact trimmed offset of a contour |
 //! | [`job`] | what a person wants: contour, offset, feed; the contour form |
 //! | [`path`] | the exact curves of the tool's centre in f64, and the pieces that a controller gets of them |
 //! | [`prepare`] | a checked job as bytes, for a sender |
@@ -14,9 +16,11 @@
 //! | [`reproduce`] | published experiments beside their published figures |
 //! | [`report`] | pictures and tables of results in one HTML file |
 
+pub mod contour;
 pub mod input;
 pub mod job;
 pub mod measure;
+pub mod offset;
 pub mod path;
 pub mod plant;
 pub mod prepare;

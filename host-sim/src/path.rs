@@ -220,5 +220,6 @@ fn fill_arc(job: &Job, node: usize) -> Arc<f64> {
     let before = &job.segments[node];
     let after = &job.segments[(node + 1) % job.segments.len()];
     let sweep = (before.tangent(1.0).conj() * after.tangent(0.0)).arg();
-    Arc { centre: before.point(1.0), radius: before.tangent(1.0).right() * job.offset, sweep }
+    let radius = before.tangent(1.0).right() * job.offset;
+    Arc { start: before.point(1.0) + radius, radius, sweep }
 }

@@ -109,7 +109,7 @@ pub fn line(x: f64, y: f64) -> Segment<f64> {
 /// The arc from the origin with its centre at (`x`, `y`) mm through `sweep` rad.
 pub fn arc(x: f64, y: f64, sweep: f64) -> Segment<f64> {
     let centre = Complex::new(x, y);
-    Segment::Arc(Arc { centre, radius: -centre, sweep })
+    Segment::Arc(Arc { start: Complex::ZERO, radius: -centre, sweep })
 }
 
 /// Curves that bend in every way a contour does: gently, in an S, tightly in the middle, with a tenfold change of speed.
@@ -127,7 +127,7 @@ pub fn moved(segment: Segment<f64>, by: Complex<f64>) -> Segment<f64> {
     match segment {
         Segment::Ph(curve) => Segment::Ph(PhQuintic { start: curve.start + by, ..curve }),
         Segment::Line(line) => Segment::Line(Line { start: line.start + by, end: line.end + by }),
-        Segment::Arc(arc) => Segment::Arc(Arc { centre: arc.centre + by, ..arc }),
+        Segment::Arc(arc) => Segment::Arc(Arc { start: arc.start + by, ..arc }),
     }
 }
 
@@ -139,7 +139,7 @@ pub fn turned(segment: Segment<f64>, by: Complex<f64>) -> Segment<f64> {
             Segment::Ph(PhQuintic { start: curve.start * by, w: curve.w.map(|w| w * root) })
         }
         Segment::Line(line) => Segment::Line(Line { start: line.start * by, end: line.end * by }),
-        Segment::Arc(arc) => Segment::Arc(Arc { centre: arc.centre * by, radius: arc.radius * by, ..arc }),
+        Segment::Arc(arc) => Segment::Arc(Arc { start: arc.start * by, radius: arc.radius * by, ..arc }),
     }
 }
 

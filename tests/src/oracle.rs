@@ -164,7 +164,7 @@ impl Draft {
             Segment::Line(line) => line.start + (line.end - line.start) * xi,
             Segment::Arc(arc) => {
                 let (sine, cosine) = (arc.sweep * xi).sin_cos();
-                arc.centre + arc.radius * Complex::new(cosine, sine)
+                arc.centre() + arc.radius * Complex::new(cosine, sine)
             }
         }
     }

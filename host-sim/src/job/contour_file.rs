@@ -167,7 +167,7 @@ fn arc(
         (true, _) => angle + turn,
         (false, _) => angle - turn,
     };
-    Ok(Arc { centre, radius, sweep })
+    Ok(Arc { start, radius, sweep })
 }
 
 fn read_pieces(

@@ -85,7 +85,7 @@ fn foot_parameter(piece: &PathPiece, position: Complex<f64>, guess: f64) -> f64 
             (along.dot(position - line.start) / along.norm_sqr()).clamp(first, last)
         }
         Segment::Arc(arc) => {
-            let angle = (arc.radius.conj() * (position - arc.centre)).arg();
+            let angle = (arc.radius.conj() * (position - arc.centre())).arg();
             // The turn of the angle that is nearest to the guess.
             let turn = std::f64::consts::TAU;
             let near = angle + turn * ((arc.sweep * guess - angle) / turn).round();
