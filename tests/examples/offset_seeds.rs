@@ -18,6 +18,8 @@ use tests::properties::{Failure, Outcome, check};
 const SAMPLES: usize = 12;
 /// Seeds printed of each kind of failure.
 const LISTED: usize = 12;
+/// A seed that takes longer is told while it still runs: it may never end.
+const PATIENCE: Duration = Duration::from_secs(5);
 
 fn main() {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -37,12 +39,13 @@ fn describe(case: &Case) -> String {
 }
 
 /// What came of a case, and the time that trimming took.
-fn attempt(case: &Case, samples: usize) -> (Result<Outcome, Failure>, Duration) {
+fn attempt(case: &Case, samples: usize, trimmed: impl Fn()) -> (Result<Outcome, Failure>, Duration) {
     let start = Instant::now();
-    let trimmed = catch_unwind(AssertUnwindSafe(|| drop(trim(&case.contour, case.distance))));
+    let result = catch_unwind(AssertUnwindSafe(|| drop(trim(&case.contour, case.distance))));
     let time = start.elapsed();
+    trimmed();
     let panicked = |_| Err(Failure { property: "panic", detail: String::new() });
-    let result = trimmed
+    let result = result
         .and_then(|()| catch_unwind(AssertUnwindSafe(|| check(&case.contour, case.distance, case.touches, samples))))
         .unwrap_or_else(panicked);
     (result, time)
@@ -69,7 +72,7 @@ fn show(seed: u64) {
         }
         Err(error) => println!("{error:?}"),
     }
-    match attempt(&case, 64) {
+    match attempt(&case, 64, || ()) {
         (Ok(outcome), time) => println!("{outcome:?}, trimmed in {time:?}"),
         (Err(failure), time) => println!("FAILED {failure}, trimmed in {time:?}"),
     }
@@ -89,9 +92,29 @@ fn run(from: u64, count: u64, samples: usize) {
     std::panic::set_hook(Box::new(|_| ()));
     let next = AtomicU64::new(from);
     let tally = Mutex::new(Tally::default());
+    let running: Mutex<BTreeMap<u64, (Instant, &str)>> = Mutex::default();
+    let note = |seed: u64, stage: &'static str| {
+        if let Ok(mut running) = running.lock() {
+            running.insert(seed, (Instant::now(), stage));
+        }
+    };
     let threads = std::thread::available_parallelism().map_or(1, usize::from);
     let start = Instant::now();
     std::thread::scope(|scope| {
+        scope.spawn(|| {
+            let mut told = 0;
+            while let Ok(running) = running.lock().map(|running| running.clone()) {
+                let late = running.iter().filter(|(_, (since, _))| since.elapsed() > PATIENCE);
+                for (seed, (_, stage)) in late.filter(|(seed, _)| **seed >= told).collect::<Vec<_>>() {
+                    println!("seed {seed} has been {stage} for {PATIENCE:?}: {}", describe(&case(*seed)));
+                    told = seed + 1;
+                }
+                if running.is_empty() && next.load(Ordering::Relaxed) >= from + count {
+                    break;
+                }
+                std::thread::sleep(Duration::from_millis(50));
+            }
+        });
         for _ in 0..threads {
             scope.spawn(|| {
                 loop {
@@ -99,8 +122,13 @@ fn run(from: u64, count: u64, samples: usize) {
                     if seed >= from + count {
                         break;
                     }
+                    note(seed, "drawing");
                     let case = case(seed);
-                    let (result, time) = attempt(&case, samples);
+                    note(seed, "trimming");
+                    let (result, time) = attempt(&case, samples, || note(seed, "checking"));
+                    if let Ok(mut running) = running.lock() {
+                        running.remove(&seed);
+                    }
                     let Ok(mut tally) = tally.lock() else { break };
                     tally.total += time;
                     tally.slowest = tally.slowest.max((time, seed));

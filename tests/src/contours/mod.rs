@@ -87,13 +87,17 @@ pub fn case(seed: u64) -> Case {
     for attempt in 0..ATTEMPTS {
         let mut random = Random::new(seed.wrapping_mul(0x2545_f491_4f6c_dd1d).wrapping_add(attempt));
         let Drawn { contour, special } = draw(&mut random);
+        if !is_sound(&contour) || (!touches && crossing(&contour).is_some()) {
+            continue;
+        }
         let distance = distance(&mut random, &contour, &special);
         let placing = placing(&mut random);
         let distance = placing.distance(distance);
         let contour = placing.contour(&contour);
         let (contour, distance) =
             if random.chance(0.5) { (reversed(&contour), -distance) } else { (contour, distance) };
-        if is_sound(&contour) && (touches || crossing(&contour).is_none()) {
+        // Placing rounds: what has just been simple may not be any more.
+        if touches || crossing(&contour).is_none() {
             return Case { seed, family, contour, distance, touches };
         }
     }
