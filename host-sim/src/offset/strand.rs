@@ -36,15 +36,48 @@ pub struct Strand {
     pub left: bool,
 }
 
-/// All strands of the offset at `distance`, in order along C; borders of an open contour after them.
-pub fn strands(ground: &Ground, distance: f64) -> Vec<Strand> {
-    let mut strands = side(ground, distance);
-    if !ground.contour.closed {
-        let border = |strand: Strand| Strand { source: Source::Border, ..strand };
-        strands.extend(side(ground, -distance).into_iter().map(border));
-        strands.extend(caps(ground, distance.abs()));
+/// The untrimmed offset.
+#[derive(Debug)]
+pub struct Untrimmed {
+    /// Its strands in order along C; behind them the borders of an open contour.
+    pub strands: Vec<Strand>,
+    /// How many of them are no borders.
+    pub own: usize,
+}
+
+impl Untrimmed {
+    /// The untrimmed offset at `distance`, in the frame of `ground`.
+    pub fn new(ground: &Ground, distance: f64) -> Self {
+        let mut strands = side(ground, distance);
+        let own = strands.len();
+        if !ground.contour.closed {
+            let border = |strand: Strand| Strand { source: Source::Border, ..strand };
+            strands.extend(side(ground, -distance).into_iter().map(border));
+            strands.extend(caps(ground, distance.abs()));
+        }
+        Self { strands, own }
     }
-    strands
+
+    /// Whether the strand of a number bounds the offset without being a part of it.
+    pub fn is_border(&self, number: usize) -> bool {
+        number >= self.own
+    }
+
+    /// Whether one strand goes on where the other ends: then they turn by less than a half turn together and cannot cross.
+    /// `a` is less than `b`.
+    pub fn neighbours(&self, a: usize, b: usize) -> bool {
+        let follows = |k: usize| self.strands.get(k).is_some_and(|strand| strand.follows);
+        if !self.is_border(b) {
+            return a + 1 == b && follows(b) || a == 0 && b + 1 == self.own && follows(0);
+        }
+        // The caps begin and end where an open offset does.
+        const TOUCH: f64 = 1e-9;
+        let (Some(one), Some(cap)) = (self.strands.get(a), self.strands.get(b)) else { return false };
+        let ends = |strand: &Strand| [strand.stretch.start(), strand.stretch.end()];
+        let touch = |p| ends(cap).into_iter().any(|q: Complex<f64>| (q - p).norm() < TOUCH);
+        let [start, end] = ends(one);
+        a == 0 && touch(start) || a + 1 == self.own && touch(end)
+    }
 }
 
 /// The offset of one side, in order along C.
@@ -52,8 +85,7 @@ fn side(ground: &Ground, distance: f64) -> Vec<Strand> {
     let contour = &ground.contour;
     let mut strands: Vec<Strand> = Vec::new();
     let mut push = |source: Source, stretch: Stretch, gap: f64| {
-        let before = strands.last().map(|strand: &Strand| strand.stretch.end());
-        let follows = before.is_some_and(|end| joined(&stretch, end, gap));
+        let follows = strands.last().is_some_and(|before: &Strand| follows(&before.stretch, &stretch, gap));
         strands.push(Strand { source, stretch, follows, left: distance > 0.0 });
     };
     let mut gap = 0.0;
@@ -80,18 +112,18 @@ fn side(ground: &Ground, distance: f64) -> Vec<Strand> {
             fill(arc).for_each(|stretch| push(Source::Fill(number), stretch, 0.0));
         }
     }
-    // The first one follows the last one around a closed contour, if they meet.
-    if let (true, Some(end)) = (contour.closed, strands.last().map(|last| last.stretch.end()))
+    // The first one follows the last one around a closed contour.
+    if let (true, Some(last)) = (contour.closed, strands.last().copied())
         && let Some(first) = strands.first_mut()
     {
-        first.follows = joined(&first.stretch, end, gap);
+        first.follows = follows(&last.stretch, &first.stretch, gap);
     }
     strands
 }
 
-/// Whether a stretch begins at `end`, as well as the contour meets there.
-fn joined(stretch: &Stretch, end: Complex<f64>, gap: f64) -> bool {
-    (stretch.start() - end).norm() < JOINED + 2.0 * gap
+/// Whether one stretch begins where the one before it ends, as well as the contour meets there.
+fn follows(before: &Stretch, stretch: &Stretch, gap: f64) -> bool {
+    (stretch.start() - before.end()).norm() < JOINED + 2.0 * gap
 }
 
 /// A fill arc in stretches.
