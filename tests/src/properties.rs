@@ -163,9 +163,8 @@ fn check_turns(contour: &Contour, distance: f64, ring: &Loop) -> Result<(), Fail
 }
 
 fn check_measures(contour: &Contour, distance: f64, ring: &Loop, size: f64) -> Result<(), Failure> {
-    let [mut length, mut area, mut gaps] = [0.0; 3];
+    let [mut length, mut area] = [0.0; 2];
     let origin = ring.pieces.first().map_or(Complex::ZERO, |piece| piece.start);
-    let mut before = if ring.closed { ring.pieces.last().map_or(origin, |piece| piece.end) } else { origin };
     for piece in &ring.pieces {
         let Some((segment, [from, to], offset)) = contour.carrier(piece.along, distance) else { continue };
         let pace = |xi: f64| {
@@ -175,11 +174,8 @@ fn check_measures(contour: &Contour, distance: f64, ring: &Loop, size: f64) -> R
         let at = |xi: f64| segment.offset_point(xi, offset) - origin;
         length += integral(&|xi| pace(xi).norm(), from, to, 1e-10 * size);
         area += integral(&|xi| 0.5 * at(xi).cross(pace(xi)), from, to, 1e-11 * size * size);
-        gaps += (segment.offset_point(from, offset) - before).norm();
-        before = segment.offset_point(to, offset);
     }
-    // Where pieces do not quite meet, neither is defined better than this.
-    let rounding = ROUNDING * size + gaps;
+    let rounding = ROUNDING * size + gaps(ring);
     if (length - ring.length).abs() > MEASURES * length + rounding {
         let off = (length - ring.length) / size;
         return failure("length", format!("{} instead of {length}, {off:.1e} of the size", ring.length));
@@ -190,6 +186,15 @@ fn check_measures(contour: &Contour, distance: f64, ring: &Loop, size: f64) -> R
         return failure("area", format!("{:e} instead of {area:e}, {off:.1e} of the size squared", ring.area));
     }
     Ok(())
+}
+
+/// The sum of the gaps in a loop: its length is not defined better than this, nor its area better than this times its size.
+fn gaps(ring: &Loop) -> f64 {
+    let inner: f64 = ring.pieces.windows(2).map(|pair| (pair[1].start - pair[0].end).norm()).sum();
+    match (ring.pieces.first(), ring.pieces.last()) {
+        (Some(first), Some(last)) if ring.closed => inner + (first.start - last.end).norm(),
+        _ => inner,
+    }
 }
 
 /// The integral of `f` to `tolerance`, by halving until a Gauss rule of five points agrees with itself.
@@ -321,9 +326,9 @@ fn check_topology(contour: &Contour, offset: &Offset) -> Result<(), Failure> {
             return failure("topology", format!("loop {number} has depth {}", ring.depth));
         }
         let expected = if is_void { -sense } else { sense };
-        // A loop that encloses no more than gaps of its own may add has no sense.
+        // A loop that encloses no more than its own gaps may add has no sense.
         let scale = size(contour).max(offset.distance.abs());
-        let thin = ring.area.abs() < BAR * (ring.length + BAR.sqrt() * scale) * scale;
+        let thin = ring.area.abs() < (ROUNDING * (scale + ring.length) + gaps(ring)) * scale;
         if ring.area * expected < 0.0 && !thin {
             return failure("topology", format!("loop {number} of depth {} has area {}", ring.depth, ring.area));
         }

@@ -172,3 +172,38 @@ fn zero(f: &impl Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
     }
     0.5 * (low + high)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn at(x: f64, y: f64) -> Complex<f64> {
+        Complex::new(x, y)
+    }
+
+    /// Parts of a bent PH curve, an arc and a line at distances to both sides, with and without cusps of the offset, against
+    /// 20 000 points of each.
+    #[test]
+    fn no_sample_of_a_piece_is_nearer() {
+        let segments = [
+            Segment::Ph(PhQuintic { start: at(-3.0, 1.0), w: [at(3.0, -2.0), at(-1.0, 2.5), at(4.0, 1.0)] }),
+            Segment::Arc(Arc { start: at(5.0, 1.0), radius: at(3.0, 0.0), sweep: -4.0 }),
+            Segment::Line(Line { start: at(1.0, 1.0), end: at(9.0, 5.0) }),
+        ];
+        for segment in segments {
+            for (interval, offset) in [([0.0, 1.0], 0.0), ([0.1, 0.9], 0.7), ([0.0, 0.6], -2.0), ([0.3, 1.0], 6.0)] {
+                let path = PathDistance::new([(segment, interval, offset)]);
+                let [from, to] = interval;
+                let sample = |k: u32| segment.offset_point(from + (to - from) * f64::from(k) / 2e4, offset);
+                let samples: Vec<_> = (0..=20_000).map(sample).collect();
+                let spacing = samples.windows(2).map(|pair| (pair[1] - pair[0]).norm()).fold(0.0, f64::max);
+                for k in 0..100 {
+                    let q = at(-12.0 + f64::from(k % 10) * 3.1, -12.0 + f64::from(k / 10) * 2.7);
+                    let brute = samples.iter().map(|p| (*p - q).norm()).fold(f64::INFINITY, f64::min);
+                    let found = path.at(q);
+                    assert!(found <= brute + 1e-13 && found >= brute - spacing, "{q:?}: {found} beside {brute}");
+                }
+            }
+        }
+    }
+}
