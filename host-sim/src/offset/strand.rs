@@ -1,6 +1,6 @@
 //! The untrimmed offset in strands: the stretches of it that run forwards, and the arcs that fill the gaps at convex nodes.
 
-use std::f64::consts::{FRAC_PI_2, PI};
+use std::f64::consts::PI;
 
 use shared::complex::Complex;
 use shared::curve::{Arc, Curve as _, Segment};
@@ -11,6 +11,9 @@ use super::stretch::{Stretch, TURN, cusps};
 /// Ends of strands that follow each other along C and are nearer to each other than this part of |d| are joined: smooth nodes, and
 /// loops too small to be seen. Half of it may be lacking from the clearance there.
 const JOINED: f64 = 1e-10;
+
+/// Strands of the half circle about an end of an open contour.
+const CAP: usize = (PI / TURN) as usize;
 
 /// What a strand runs along.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -70,13 +73,14 @@ impl Untrimmed {
         if !self.is_border(b) {
             return a + 1 == b && follows(b) || a == 0 && b + 1 == self.own && follows(0);
         }
-        // The caps begin and end where an open offset does.
-        const TOUCH: f64 = 1e-9;
+        // The cap about the start of C begins or ends where the first strand starts, that about its end where the last one ends.
+        const TOUCH: f64 = 1e-12;
+        let behind = self.strands.len() - b;
         let (Some(one), Some(cap)) = (self.strands.get(a), self.strands.get(b)) else { return false };
-        let ends = |strand: &Strand| [strand.stretch.start(), strand.stretch.end()];
-        let touch = |p| ends(cap).into_iter().any(|q: Complex<f64>| (q - p).norm() < TOUCH);
-        let [start, end] = ends(one);
-        a == 0 && touch(start) || a + 1 == self.own && touch(end)
+        let touches =
+            |p| [cap.stretch.start(), cap.stretch.end()].into_iter().any(|q: Complex<f64>| (q - p).norm() < TOUCH);
+        a == 0 && (CAP + 1..=2 * CAP).contains(&behind) && touches(one.stretch.start())
+            || a + 1 == self.own && behind <= CAP && touches(one.stretch.end())
     }
 }
 
@@ -135,7 +139,7 @@ pub fn fill(arc: Arc<f64>) -> impl Iterator<Item = Stretch> {
     (0..parts as usize).map(move |k| Stretch::new(&segment, k as f64 / parts, (k + 1) as f64 / parts, 0.0))
 }
 
-/// Half circles about both ends of an open contour.
+/// Half circles about both ends of an open contour, [`CAP`] strands each.
 fn caps(ground: &Ground, radius: f64) -> Vec<Strand> {
     let contour = &ground.contour;
     let ends = contour.segments.first().map(|s| (s.point(0.0), s.tangent(0.0).left())).into_iter();
@@ -144,6 +148,5 @@ fn caps(ground: &Ground, radius: f64) -> Vec<Strand> {
         let radius = side * radius;
         fill(Arc { start: centre + radius, radius, sweep: PI })
     });
-    debug_assert!(TURN <= FRAC_PI_2);
     halves.map(|stretch| Strand { source: Source::Border, stretch, follows: false, left: true }).collect()
 }
