@@ -17,6 +17,9 @@ use crate::winding::Polygon;
 const BAR: f64 = 1e-9;
 /// Lengths and areas against quadrature, relative.
 const MEASURES: f64 = 1e-7;
+/// What lengths and areas may be wrong by at least, in parts of the size and of its square: a loop that nearly vanishes is a
+/// difference of numbers that large.
+const ROUNDING: f64 = 1e-14;
 /// Turning angles in radians: tangents at parameters that are good to 1e-9 and better.
 const ANGLES: f64 = 1e-7;
 
@@ -160,8 +163,9 @@ fn check_turns(contour: &Contour, distance: f64, ring: &Loop) -> Result<(), Fail
 }
 
 fn check_measures(contour: &Contour, distance: f64, ring: &Loop, size: f64) -> Result<(), Failure> {
-    let [mut length, mut area] = [0.0; 2];
+    let [mut length, mut area, mut gaps] = [0.0; 3];
     let origin = ring.pieces.first().map_or(Complex::ZERO, |piece| piece.start);
+    let mut before = if ring.closed { ring.pieces.last().map_or(origin, |piece| piece.end) } else { origin };
     for piece in &ring.pieces {
         let Some((segment, [from, to], offset)) = contour.carrier(piece.along, distance) else { continue };
         let pace = |xi: f64| {
@@ -171,14 +175,19 @@ fn check_measures(contour: &Contour, distance: f64, ring: &Loop, size: f64) -> R
         let at = |xi: f64| segment.offset_point(xi, offset) - origin;
         length += integral(&|xi| pace(xi).norm(), from, to, 1e-10 * size);
         area += integral(&|xi| 0.5 * at(xi).cross(pace(xi)), from, to, 1e-11 * size * size);
+        gaps += (segment.offset_point(from, offset) - before).norm();
+        before = segment.offset_point(to, offset);
     }
-    if (length - ring.length).abs() > MEASURES * length.max(BAR * size) {
-        return failure("length", format!("{} instead of {length}", ring.length));
+    // Where pieces do not quite meet, neither is defined better than this.
+    let rounding = ROUNDING * size + gaps;
+    if (length - ring.length).abs() > MEASURES * length + rounding {
+        let off = (length - ring.length) / size;
+        return failure("length", format!("{} instead of {length}, {off:.1e} of the size", ring.length));
     }
     let area = if ring.closed { area } else { 0.0 };
-    // The area of a thin loop is a difference of large ones.
-    if (area - ring.area).abs() > MEASURES * area.abs() + 1e-2 * BAR * size * length {
-        return failure("area", format!("{} instead of {area}", ring.area));
+    if (area - ring.area).abs() > MEASURES * area.abs() + rounding * size {
+        let off = (area - ring.area) / (size * size);
+        return failure("area", format!("{:e} instead of {area:e}, {off:.1e} of the size squared", ring.area));
     }
     Ok(())
 }
@@ -312,8 +321,9 @@ fn check_topology(contour: &Contour, offset: &Offset) -> Result<(), Failure> {
             return failure("topology", format!("loop {number} has depth {}", ring.depth));
         }
         let expected = if is_void { -sense } else { sense };
-        // A loop that encloses nothing has no sense.
-        let thin = ring.area.abs() < BAR * ring.length * size(contour).max(offset.distance.abs());
+        // A loop that encloses no more than gaps of its own may add has no sense.
+        let scale = size(contour).max(offset.distance.abs());
+        let thin = ring.area.abs() < BAR * (ring.length + BAR.sqrt() * scale) * scale;
         if ring.area * expected < 0.0 && !thin {
             return failure("topology", format!("loop {number} of depth {} has area {}", ring.depth, ring.area));
         }
@@ -334,11 +344,12 @@ fn check_empty(contour: &Contour, distance: f64, largest: f64, samples: usize) -
         return failure("wrongly empty", format!("a tool of {} |d| touches", reach / d));
     }
     if largest.is_nan() || largest > d * (1.0 + BAR) || reach > largest * (1.0 + BAR) {
-        return failure("largest", format!("{largest} at |d| = {d}, but one of {reach} touches"));
+        return failure("largest", format!("{largest} at |d| = {d}, but a tool of {reach} touches"));
     }
     let smaller = largest * distance.signum() * (1.0 - 1e-6);
     match trim(contour, smaller) {
-        Ok(offset) => check_clearance(contour, &offset, samples),
-        Err(error) => failure("largest", format!("{largest} at |d| = {d}, but at {smaller}: {error:?}")),
+        Ok(offset) => check_clearance(contour, &offset, samples)
+            .or_else(|found| failure("largest", format!("{largest} at |d| = {d}, but at a millionth less {found}"))),
+        Err(error) => failure("largest", format!("{largest} at |d| = {d}, but at a millionth less: {error:?}")),
     }
 }
