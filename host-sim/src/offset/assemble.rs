@@ -15,6 +15,9 @@ use super::{Along, Contour, Loop, Piece};
 /// A piece shorter than this, in the unit of the frame, is left out: the gap that it leaves is as small.
 const SHORTEST: f64 = 1e-10;
 
+/// A loop shorter than this is a tool that just fits a place, to rounding: left out, as the largest tool that fits is.
+const PLUNGE: f64 = 2.5e-9;
+
 /// How far a trim point may move when it is made exact, in the unit of the frame: more than the change of the distance can ask for.
 const POLISH: f64 = 1e-7;
 
@@ -187,7 +190,7 @@ fn draft(ground: &Ground, source: Source, stretch: &Stretch, [a, b]: [f64; 2], d
 
 /// Turns drafts into a loop; none where nothing is left.
 fn finish(contour: &Contour, ground: &Ground, drafts: Vec<Draft>, closed: bool, distance: f64) -> Option<Loop> {
-    if drafts.is_empty() {
+    if drafts.iter().map(|draft| draft.length).sum::<f64>() < PLUNGE {
         return None;
     }
     let (mut length, mut area) = (0.0, 0.0);
