@@ -2,7 +2,7 @@
 //!
 //! A curve and its offset have their normals in common, so the feet of q on a piece at the distance d lie over the feet of q
 //! on its segment, nearest and farthest ones alike: all zeros of Re((r - q) conj(r')), degree 9 on a PH quintic. Its Bernstein
-//! coefficients isolate them.
+//! coefficients isolate them. The tip of a cusp of the offset may be nearest as well; no trimmed piece has one inside.
 
 use shared::complex::Complex;
 use shared::curve::{Arc, Curve as _, Line, PhQuintic, Segment};
@@ -26,6 +26,8 @@ struct Part {
     segment: Segment<f64>,
     offset: f64,
     bounds: Bounds,
+    /// Where the offset has cusps.
+    cusps: Vec<f64>,
 }
 
 impl PathDistance {
@@ -35,7 +37,7 @@ impl PathDistance {
             .into_iter()
             .map(|(segment, interval, offset)| {
                 let segment = part(&segment, interval);
-                Part { segment, offset, bounds: bounds(&segment, offset) }
+                Part { segment, offset, bounds: bounds(&segment, offset), cusps: cusps(&segment, offset) }
             })
             .collect();
         Self { pieces }
@@ -47,7 +49,7 @@ impl PathDistance {
         for Part { segment, offset, .. } in &self.pieces {
             best = best.min((segment.offset_point(0.0, *offset) - q).norm());
         }
-        for Part { segment, offset, bounds } in &self.pieces {
+        for Part { segment, offset, bounds, cusps } in &self.pieces {
             if bounds.distance_sqr(q) >= best * best {
                 continue;
             }
@@ -56,6 +58,9 @@ impl PathDistance {
                 best
             };
             offer(1.0);
+            for xi in cusps {
+                offer(*xi);
+            }
             match segment {
                 Segment::Line(line) => {
                     offer(on_line(line, q));
@@ -111,6 +116,19 @@ fn bounds(segment: &Segment<f64>, offset: f64) -> Bounds {
         segment.length_to(to) - segment.length_to(from) + offset.abs() * turn
     });
     Bounds::around(points).grown(0.5 * longest.fold(0.0, f64::max))
+}
+
+/// Where 1 + kappa d changes its sign along a segment.
+fn cusps(segment: &Segment<f64>, offset: f64) -> Vec<f64> {
+    /// Places where the sign is asked; two cusps between neighbours are so close that neither is much nearer than they are.
+    const PLACES: u32 = 256;
+    if !matches!(segment, Segment::Ph(_)) || offset == 0.0 {
+        return Vec::new();
+    }
+    let stretch = |xi: f64| 1.0 + segment.curvature(xi) * offset;
+    let places = (0..PLACES).map(|k| [k, k + 1].map(|k| f64::from(k) / f64::from(PLACES)));
+    let changes = places.filter(|[from, to]| (stretch(*from) > 0.0) != (stretch(*to) > 0.0));
+    changes.map(|[from, to]| zero(&stretch, from, to)).collect()
 }
 
 /// Offers every foot of `q` on a whole PH quintic that can carry a point of its offset nearer than the best one.
