@@ -1,0 +1,171 @@
+//! Which curves the tool's centre runs along: the pieces that a job gives, the contour itself, or a loop of its trimmed offset;
+//! where they meet in a corner, and how the feed goes down there.
+
+use super::PathPiece;
+use super::drivable::drivable;
+use crate::contour::{Along, SMOOTH};
+use crate::input::InputError;
+use crate::job::{Corner, Job};
+use crate::offset::{Loop, Offset};
+
+/// A trimmed offset, of which a path runs one loop.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Trimmed {
+    /// All of it.
+    pub offset: Offset,
+    /// The number of the loop that is run.
+    pub number: usize,
+}
+
+/// The pieces of a path with corners and ramps, not yet checked.
+#[derive(Debug)]
+pub(super) struct Route {
+    pub pieces: Vec<PathPiece>,
+    pub closed: bool,
+    pub trimmed: Option<Trimmed>,
+}
+
+impl Route {
+    /// Finds the way of a job. A job that gives its pieces is never trimmed.
+    pub(super) fn new(job: &Job) -> Result<Self, InputError> {
+        if job.pieces.is_empty() && job.offset != 0.0 {
+            return Self::trimmed(job);
+        }
+        if job.chosen.is_some() {
+            let message =
+                "there is no loop to choose, because the job gives its pieces or has no offset; leave the choice out";
+            return Err(job.choice_error(message));
+        }
+        let pieces = if job.pieces.is_empty() {
+            let whole = |segment| Along::Segment { segment, from: 0.0, to: 1.0 };
+            bare(job, (0..job.contour.segments.len()).map(whole))
+        } else {
+            bare(job, job.pieces.iter().map(|given| given.along))
+        };
+        let mut route = Self { pieces, closed: job.contour.closed, trimmed: None };
+        route.mark_corners(job);
+        Ok(route)
+    }
+
+    fn trimmed(job: &Job) -> Result<Self, InputError> {
+        let offset = job.trim()?;
+        let number = choose(job, &offset)?;
+        let Loop { closed, pieces, .. } = &offset.loops[number];
+        let pieces = drivable(bare(job, pieces.iter().map(|piece| piece.along)), job.tolerance, job.feed.weight);
+        let mut route = Self { pieces, closed: *closed, trimmed: None };
+        route.mark_corners(job);
+        route.trimmed = Some(Trimmed { offset, number });
+        Ok(route)
+    }
+
+    /// Sets corners and ramps: where a given piece says so, elsewhere where the way itself turns.
+    fn mark_corners(&mut self, job: &Job) {
+        let turns = self.turns();
+        let feed = &job.feed;
+        for (number, (piece, turns)) in self.pieces.iter_mut().zip(turns).enumerate() {
+            let corners = match job.pieces.get(number) {
+                Some(given) => [given.start, given.end],
+                None => turns.map(|turn| (turn.abs() > SMOOTH).then(Corner::default)),
+            };
+            let [start, end] = corners;
+            let [into, behind] = turns;
+            piece.start_corner = start.map(|_| into);
+            piece.end_corner = end.map(|_| behind);
+            piece.start = start.and_then(|corner| corner.ramp(feed.reduction, feed.ramp, into));
+            piece.end = end.and_then(|corner| corner.ramp(feed.reduction, feed.ramp, behind));
+        }
+    }
+
+    /// The turns of the way at both ends of each piece; 0 at the free ends of an open one.
+    fn turns(&self) -> Vec<[f64; 2]> {
+        let turn = |before: Option<&PathPiece>, after: Option<&PathPiece>| match (before, after) {
+            (Some(before), Some(after)) => {
+                (before.direction(before.interval[1]).conj() * after.direction(after.interval[0])).arg()
+            }
+            _ => 0.0,
+        };
+        let pieces = &self.pieces;
+        let around = |end: Option<&'_ PathPiece>| if self.closed { end.copied() } else { None };
+        let (first, last) = (around(pieces.first()), around(pieces.last()));
+        (0..pieces.len())
+            .map(|k| {
+                let before = k.checked_sub(1).and_then(|k| pieces.get(k)).or(last.as_ref());
+                let after = pieces.get(k + 1).or(first.as_ref());
+                [turn(before, pieces.get(k)), turn(pieces.get(k), after)]
+            })
+            .collect()
+    }
+}
+
+/// The curves alone.
+fn bare(job: &Job, along: impl Iterator<Item = Along>) -> Vec<PathPiece> {
+    along.filter_map(|along| PathPiece::new(&job.contour, along, job.offset, job.feed.rate)).collect()
+}
+
+/// The number of the loop that a job runs.
+fn choose(job: &Job, offset: &Offset) -> Result<usize, InputError> {
+    let count = offset.loops.len();
+    let last = count.saturating_sub(1);
+    match job.chosen {
+        Some(number) if number < count => Ok(number),
+        Some(number) if count == 1 => {
+            Err(job.choice_error(format_args!("there is no loop {number}; the trimmed offset is the one loop 0")))
+        }
+        Some(number) => Err(job.choice_error(format_args!(
+            "there is no loop {number}; the trimmed offset has {count} loops, numbered from 0 to {last}"
+        ))),
+        None if count == 1 => Ok(0),
+        None => Err(job.choice_error(format_args!(
+            "the trimmed offset has {count} loops, and a run is one of them; choose it with --loop or with `loop` under \
+             [offset], from 0 to {last} as `hodograph offset` numbers them"
+        ))),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
+
+    fn job(head: &str, rest: &str) -> Job {
+        let text = format!("units = \"mm\"\n{head}\n[feed]\nrate = 600.0\nreduction = 0.5\n{rest}");
+        Job::from_toml("job.toml", &text).unwrap()
+    }
+
+    const SQUARE: &str = "[[segment]]\nline = { start = [0.0, 0.0], to = [10.0, 0.0] }\n\
+        [[segment]]\nline = { to = [10.0, 10.0] }\n[[segment]]\nline = { to = [0.0, 10.0] }\n\
+        [[segment]]\nline = { to = [0.0, 0.0] }\n";
+
+    /// A closed square turns by a quarter four times, an open one three times.
+    #[test]
+    fn contour_itself_has_its_corners() {
+        let route = Route::new(&job("closed = true", SQUARE)).unwrap();
+        for piece in &route.pieces {
+            assert!((piece.start_corner.unwrap() - FRAC_PI_2).abs() < 1e-15);
+            assert!((piece.end_corner.unwrap() - FRAC_PI_2).abs() < 1e-15);
+            assert_eq!(piece.start.unwrap().factor, 0.5);
+        }
+        let route = Route::new(&job("closed = false", SQUARE)).unwrap();
+        assert_eq!(route.pieces.iter().filter(|piece| piece.start_corner.is_some()).count(), 3);
+        assert_eq!((route.pieces[0].start_corner, route.pieces[3].end_corner), (None, None));
+    }
+
+    /// Half of a fill arc: its tangent is turned by half of the node's angle, and so is the corner there.
+    #[test]
+    fn given_part_of_a_fill_arc_turns_as_far_as_it_goes() {
+        let pieces = "[[piece]]\nsegment = 0\n[[piece]]\nfill = { node = 0, to = 0.5 }\nend_corner = true\n\
+            [[piece]]\nsegment = 1\nstart_corner = true\n";
+        let job = job("closed = false\n[offset]\ndistance = 2.0", &format!("{SQUARE}{pieces}"));
+        let route = Route::new(&job).unwrap();
+        assert_eq!(route.pieces[1].along, Along::Fill { node: 0, from: 0.0, to: 0.5 });
+        assert!((route.pieces[1].centre_length() - 2.0 * FRAC_PI_4).abs() < 1e-15);
+        assert!((route.pieces[1].end_corner.unwrap() - FRAC_PI_4).abs() < 1e-15);
+        assert_eq!(route.pieces[0].end_corner, None);
+    }
+
+    #[test]
+    fn nothing_to_choose_is_said() {
+        let error = Route::new(&job("closed = true", SQUARE).with_loop(Some(0))).unwrap_err();
+        assert!(error.to_string().starts_with("--loop: there is no loop to choose"), "{error}");
+    }
+}
