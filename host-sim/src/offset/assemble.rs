@@ -33,7 +33,8 @@ struct Draft {
 /// The loops of `traced`, in mm, at exactly `distance` (mm) from `contour`.
 pub fn loops(contour: &Contour, ground: &Ground, traced: &Traced, distance: f64) -> Vec<Loop> {
     let exact = ground.to_frame(distance);
-    let strands: Vec<Stretch> = traced.strands.iter().map(|strand| at_distance(ground, strand, exact)).collect();
+    let strands: Vec<Stretch> =
+        traced.untrimmed.strands.iter().map(|strand| at_distance(ground, strand, exact)).collect();
     let trims: Vec<[f64; 2]> = traced
         .joints
         .iter()
@@ -111,7 +112,9 @@ fn drafts(
             if let (true, End::Joint(joint)) = (position + 1 == count, fragment.end) {
                 to = trims.get(joint).map_or(to, |tau| tau[0]);
             }
-            let (Some(strand), Some(stretch)) = (traced.strands.get(number), strands.get(number)) else { continue };
+            let (Some(strand), Some(stretch)) = (traced.untrimmed.strands.get(number), strands.get(number)) else {
+                continue;
+            };
             let draft = draft(ground, strand.source, stretch, [from, to], distance);
             match drafts.last_mut().filter(|last| position > 0 && goes_on(last, &draft)) {
                 Some(last) => {

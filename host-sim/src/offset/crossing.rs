@@ -190,39 +190,37 @@ impl<'a> Pair<'a> {
     /// The one crossing between two places of different sign.
     fn crossing(&self, mut a: Place, mut b: Place) -> Crossing {
         let rising = a.apart < 0.0;
-        let mut at = a;
+        let to_left = rising == (self.sense > 0.0);
         for round in 0..60 {
-            let width = b.along - a.along;
             // False position, and a halving now and then so that no end stays where it is.
             let share = a.apart / (a.apart - b.apart);
             let share = if round % 3 == 2 || !(share > 0.0 && share < 1.0) { 0.5 } else { share };
-            let along = a.along + width * share;
+            let along = a.along + (b.along - a.along) * share;
             if !(along > a.along && along < b.along) {
                 break;
             }
-            at = self.place(along, &a, &b);
-            if at.apart == 0.0 {
-                break;
-            }
-            if (at.apart < 0.0) == (a.apart < 0.0) {
+            let at = self.place(along, &a, &b);
+            if (at.apart < 0.0) == rising {
                 a = at
             } else {
                 b = at
             }
             if let Some(tau) = self.newton(at.tau, &a, &b) {
-                at.tau = tau;
-                break;
+                return Crossing { tau, to_left };
             }
         }
-        Crossing { tau: at.tau, to_left: rising == (self.sense > 0.0) }
+        let nearer = if a.apart.abs() < b.apart.abs() { a } else { b };
+        Crossing { tau: nearer.tau, to_left }
     }
 
     /// Newton's method for the two parameters from `tau`, if it ends within the bracket.
     fn newton(&self, mut tau: [f64; 2], a: &Place, b: &Place) -> Option<[f64; 2]> {
-        for _ in 0..8 {
+        let mut before = f64::INFINITY;
+        for _ in 0..10 {
             let step = newton_step(self.stretch, tau)?;
-            let [first, second] = step;
-            tau = [tau[0] + first, tau[1] + second];
+            let moved = [0, 1].map(|side| (step[side] * self.stretch[side].at(tau[side]).speed).abs());
+            let moved = moved[0].max(moved[1]);
+            tau = [tau[0] + step[0], tau[1] + step[1]];
             let within = |side: usize| {
                 let (a, b) = (a.tau[side], b.tau[side]);
                 let slack = 1e-12;
@@ -231,9 +229,11 @@ impl<'a> Pair<'a> {
             if !(within(0) && within(1)) {
                 return None;
             }
-            if first.abs().max(second.abs()) < 1e-14 {
+            // At the end only rounding moves it, which does not shrink.
+            if moved < 1e-16 || before < 1e-9 && moved > 0.25 * before {
                 return Some(tau.map(|t| t.clamp(-0.5, 0.5)));
             }
+            before = moved;
         }
         None
     }

@@ -10,7 +10,15 @@ use super::stretch::Stretch;
 #[derive(Debug)]
 pub struct Field {
     stretches: Vec<Stretch>,
+    hulls: Vec<Hull>,
     tree: RTree<Entry>,
+}
+
+/// A triangle around a stretch, wider on all sides by a margin.
+#[derive(Clone, Copy, Debug)]
+struct Hull {
+    corners: [Complex<f64>; 3],
+    margin: f64,
 }
 
 /// A stretch's box in the tree.
@@ -41,12 +49,11 @@ impl PointDistance for Entry {
 impl Field {
     /// An index of `stretches`; they keep their numbers.
     pub fn new(stretches: Vec<Stretch>) -> Self {
-        let boxed = |(number, stretch): (usize, &Stretch)| {
-            let [low, high] = stretch.bounds();
-            Entry { number, bounds: AABB::from_corners([low.re, low.im], [high.re, high.im]) }
-        };
-        let tree = RTree::bulk_load(stretches.iter().enumerate().map(boxed).collect());
-        Self { stretches, tree }
+        let hulls: Vec<Hull> =
+            stretches.iter().map(Stretch::hull).map(|(corners, margin)| Hull { corners, margin }).collect();
+        let boxed = |(number, hull): (usize, &Hull)| Entry { number, bounds: hull.bounds() };
+        let tree = RTree::bulk_load(hulls.iter().enumerate().map(boxed).collect());
+        Self { stretches, hulls, tree }
     }
 
     /// All stretches, by number.
@@ -82,14 +89,50 @@ impl Field {
             .find(|&distance| distance < limit)
     }
 
-    /// Calls `look` for every two stretches whose boxes meet, once, the lower number first.
+    /// Calls `look` for every two stretches whose triangles meet, once, the lower number first.
     pub fn pairs(&self, mut look: impl FnMut(usize, usize)) {
         for entry in &self.tree {
             for other in self.tree.locate_in_envelope_intersecting(entry.bounds) {
-                if entry.number < other.number {
-                    look(entry.number, other.number);
+                let (a, b) = (entry.number, other.number);
+                if a < b
+                    && let (Some(one), Some(two)) = (self.hulls.get(a), self.hulls.get(b))
+                    && !one.apart_from(two)
+                    && !two.apart_from(one)
+                {
+                    look(a, b);
                 }
             }
         }
     }
+}
+
+impl Hull {
+    /// The box around the triangle.
+    fn bounds(&self) -> AABB<[f64; 2]> {
+        let far = f64::INFINITY;
+        let (low, high) = self.corners.iter().fold(([far, far], [-far, -far]), |(low, high), p| {
+            ([p.re.min(low[0]), p.im.min(low[1])], [p.re.max(high[0]), p.im.max(high[1])])
+        });
+        let margin = self.margin;
+        AABB::from_corners(low.map(|x| x - margin), high.map(|x| x + margin))
+    }
+
+    /// Whether the line along a side of this triangle parts the two.
+    fn apart_from(&self, other: &Self) -> bool {
+        let [a, b, c] = self.corners;
+        let margin = self.margin + other.margin;
+        [(a, b, c), (b, c, a), (c, a, b)].into_iter().any(|(from, to, third)| {
+            let normal = (to - from).left();
+            let slack = margin * (normal.re.abs() + normal.im.abs());
+            let height = |p: Complex<f64>| normal.dot(p - from);
+            let [low, high] = spread([0.0, 0.0, height(third)]);
+            let [least, most] = spread(other.corners.map(height));
+            least > high + slack || most < low - slack
+        })
+    }
+}
+
+/// The least and the greatest of three.
+fn spread([a, b, c]: [f64; 3]) -> [f64; 2] {
+    [a.min(b).min(c), a.max(b).max(c)]
 }

@@ -1,6 +1,7 @@
 //! The exact trimmed offset of any contour: the path of a tool's centre that touches the part and never cuts into it.
 
 mod assemble;
+mod bury;
 mod crossing;
 mod field;
 mod foot;

@@ -4,7 +4,7 @@
 //! least of these radii belongs to the largest tool that reaches everything, and the greatest to the largest that fits at all.
 
 use super::ground::Ground;
-use super::strand::{Source, Strand, strands};
+use super::strand::{Source, Strand, Untrimmed};
 use super::stretch::Stretch;
 use super::trace::{End, trace};
 use super::undercut::golden;
@@ -32,8 +32,8 @@ impl<'a> Reach<'a> {
     /// Discs on the side of `side`'s sign, positive right of travel.
     pub fn new(ground: &'a Ground, side: f64) -> Self {
         let side = side.signum();
-        let mut strands = strands(ground, side * GRAZING);
-        strands.retain(|strand| strand.source != Source::Border);
+        let Untrimmed { mut strands, own } = Untrimmed::new(ground, side * GRAZING);
+        strands.truncate(own);
         Self { ground, side, strands }
     }
 
@@ -135,7 +135,7 @@ impl<'a> Reach<'a> {
         })?;
         // Just behind the place where the tool turns off C begins what it does not touch.
         let (number, tau) = trimmed.ends;
-        let strand = traced.strands.get(number)?;
+        let strand = traced.untrimmed.strands.get(number)?;
         let beyond = strand.stretch.parameter((tau + 1e-3).min(0.5));
         let same = |s: &&Strand| s.source == strand.source && s.stretch.from <= beyond && beyond <= s.stretch.to;
         let found = self.strands.iter().find(same)?;

@@ -36,15 +36,46 @@ pub struct Strand {
     pub left: bool,
 }
 
-/// All strands of the offset at `distance`, in order along C; borders of an open contour after them.
-pub fn strands(ground: &Ground, distance: f64) -> Vec<Strand> {
-    let mut strands = side(ground, distance);
-    if !ground.contour.closed {
-        let border = |strand: Strand| Strand { source: Source::Border, ..strand };
-        strands.extend(side(ground, -distance).into_iter().map(border));
-        strands.extend(caps(ground, distance.abs()));
+/// The untrimmed offset.
+#[derive(Debug)]
+pub struct Untrimmed {
+    /// Its strands in order along C; behind them the borders of an open contour.
+    pub strands: Vec<Strand>,
+    /// How many of them are no borders.
+    pub own: usize,
+}
+
+impl Untrimmed {
+    /// The untrimmed offset at `distance`, in the frame of `ground`.
+    pub fn new(ground: &Ground, distance: f64) -> Self {
+        let mut strands = side(ground, distance);
+        let own = strands.len();
+        if !ground.contour.closed {
+            let border = |strand: Strand| Strand { source: Source::Border, ..strand };
+            strands.extend(side(ground, -distance).into_iter().map(border));
+            strands.extend(caps(ground, distance.abs()));
+        }
+        Self { strands, own }
     }
-    strands
+
+    /// Whether the strand of a number bounds the offset without being a part of it.
+    pub fn is_border(&self, number: usize) -> bool {
+        number >= self.own
+    }
+
+    /// Whether one strand goes on where the other ends: then they turn by less than a half turn together and cannot cross.
+    /// `a` is less than `b`.
+    pub fn neighbours(&self, a: usize, b: usize) -> bool {
+        let follows = |k: usize| self.strands.get(k).is_some_and(|strand| strand.follows);
+        if !self.is_border(b) {
+            return a + 1 == b && follows(b) || a == 0 && b + 1 == self.own && follows(0);
+        }
+        // The caps begin and end where an open offset does.
+        const TOUCH: f64 = 1e-9;
+        let (Some(one), Some(cap)) = (self.strands.get(a), self.strands.get(b)) else { return false };
+        let touch = |p: &Strand, q: &Strand| (p.stretch.end() - q.stretch.start()).norm() < TOUCH;
+        (a == 0 || a + 1 == self.own) && (touch(one, cap) || touch(cap, one))
+    }
 }
 
 /// The offset of one side, in order along C.

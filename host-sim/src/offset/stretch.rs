@@ -133,28 +133,21 @@ impl Stretch {
         }
     }
 
-    /// Lower left and upper right corner of a box that holds the stretch, if it runs forwards all along.
-    ///
-    /// The tangent turns one way by less than a right angle, so the stretch lies in the triangle of its chord and its end tangents.
-    pub fn bounds(&self) -> [Complex<f64>; 2] {
+    /// A triangle that holds the stretch, if it runs forwards all along, to within the second value: that of its chord and its end
+    /// tangents, between which a tangent that turns one way by less than a right angle stays.
+    pub fn hull(&self) -> ([Complex<f64>; 3], f64) {
         let (start, end) = (self.at(-0.5), self.at(0.5));
         let chord = end.point - start.point;
         let sine = start.tangent.cross(end.tangent);
         // Where the turn is this small, the triangle's tip is nearer to the chord than this part of its length.
         const STRAIGHT: f64 = 1e-7;
-        let (tip, margin) = if sine.abs() > STRAIGHT {
-            (start.point + start.tangent * (chord.cross(end.tangent) / sine), 0.0)
+        let rounding = 1e-15 * (1.0 + self.offset.abs());
+        if sine.abs() > STRAIGHT {
+            let tip = start.point + start.tangent * (chord.cross(end.tangent) / sine);
+            ([start.point, end.point, tip], rounding)
         } else {
-            (start.point, STRAIGHT * chord.norm())
-        };
-        let margin = margin + 1e-15 * (1.0 + self.offset.abs());
-        let low = |a: f64, b: f64, c: f64| a.min(b).min(c) - margin;
-        let high = |a: f64, b: f64, c: f64| a.max(b).max(c) + margin;
-        let [a, b, c] = [start.point, end.point, tip];
-        [
-            Complex::new(low(a.re, b.re, c.re), low(a.im, b.im, c.im)),
-            Complex::new(high(a.re, b.re, c.re), high(a.im, b.im, c.im)),
-        ]
+            ([start.point, end.point, start.point], rounding + STRAIGHT * chord.norm())
+        }
     }
 }
 

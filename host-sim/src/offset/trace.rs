@@ -7,19 +7,20 @@
 
 use std::collections::HashMap;
 
+use super::bury::bury;
 use super::crossing::{Crossing, crossings};
 use super::field::Field;
 use super::ground::Ground;
-use super::strand::{Source, Strand, strands};
+use super::strand::Untrimmed;
 
 /// A distance from C that falls short of |d| by less than this, in the unit of the frame, is a rounding.
-const ROUNDING: f64 = 1e-14;
+pub const ROUNDING: f64 = 1e-14;
 
 /// What is kept, not yet polished.
 #[derive(Debug)]
 pub struct Traced {
-    /// The strands of the untrimmed offset.
-    pub strands: Vec<Strand>,
+    /// The untrimmed offset.
+    pub untrimmed: Untrimmed,
     /// Their crossings.
     pub joints: Vec<Joint>,
     /// Runs of fragments, each beginning where the one before it ends.
@@ -79,27 +80,19 @@ struct Event {
 
 /// The trimmed offset at `distance`, in the frame of `ground`. Errors: what is found does not join to loops.
 pub fn trace(ground: &Ground, distance: f64) -> Result<Traced, Undecided> {
-    let strands = strands(ground, distance);
+    let (untrimmed, alive) = bury(ground, Untrimmed::new(ground, distance), distance);
     let limit = distance.abs();
-    let alive: Vec<bool> = strands.iter().map(|strand| !buried(ground, strand, limit)).collect();
-    let (joints, events) = meet(&strands, &alive);
-    let tracer = Tracer { ground, strands: &strands, alive: &alive, joints: &joints, events: &events, limit };
+    let (joints, events) = meet(&untrimmed, &alive);
+    let tracer = Tracer { ground, untrimmed: &untrimmed, alive: &alive, joints: &joints, events: &events, limit };
     let fragments: Vec<Fragment> =
         tracer.candidates().into_iter().filter(|fragment| tracer.is_clear(fragment)).collect();
-    let loops = chain(fragments, &joints, &strands)?;
-    Ok(Traced { strands, joints, loops })
-}
-
-/// Whether all of a strand is nearer to C than `limit`: its middle is, by more than the way from there to its ends.
-fn buried(ground: &Ground, strand: &Strand, limit: f64) -> bool {
-    let middle = strand.stretch.at(0.0).point;
-    // Over a turn of 45 degrees an arc is at most 1.09 times as long as its chord; the way to the farther end is longer.
-    let way = 1.1 * (strand.stretch.start() - middle).norm().max((strand.stretch.end() - middle).norm());
-    ground.field.any_nearer(middle, limit - way - ROUNDING).is_some()
+    let loops = chain(fragments, &joints, &untrimmed)?;
+    Ok(Traced { untrimmed, joints, loops })
 }
 
 /// All crossings of strands that are not buried.
-fn meet(strands: &[Strand], alive: &[bool]) -> (Vec<Joint>, Vec<Vec<Event>>) {
+fn meet(untrimmed: &Untrimmed, alive: &[bool]) -> (Vec<Joint>, Vec<Vec<Event>>) {
+    let strands = &untrimmed.strands;
     let numbers: Vec<usize> = alive.iter().enumerate().filter(|(_, alive)| **alive).map(|(k, _)| k).collect();
     let field = Field::new(numbers.iter().filter_map(|&k| Some(strands.get(k)?.stretch)).collect());
     let mut joints = Vec::new();
@@ -108,8 +101,7 @@ fn meet(strands: &[Strand], alive: &[bool]) -> (Vec<Joint>, Vec<Vec<Event>>) {
     field.pairs(|i, j| {
         let [Some(&a), Some(&b)] = [i, j].map(|k| numbers.get(k)) else { return };
         let [Some(first), Some(second)] = [a, b].map(|k| strands.get(k)) else { return };
-        let borders = [first, second].map(|strand| strand.source == Source::Border);
-        if borders == [true, true] || neighbours(strands, a, b) {
+        if untrimmed.is_border(a) || untrimmed.neighbours(a, b) {
             return;
         }
         found.clear();
@@ -138,24 +130,9 @@ fn meet(strands: &[Strand], alive: &[bool]) -> (Vec<Joint>, Vec<Vec<Event>>) {
     (joints, events)
 }
 
-/// Whether one strand goes on where the other ends: then they turn by less than a half turn together and cannot cross.
-fn neighbours(strands: &[Strand], a: usize, b: usize) -> bool {
-    let follows = |k: usize| strands.get(k).is_some_and(|strand| strand.follows);
-    let offset = strands.iter().take_while(|strand| strand.source != Source::Border).count();
-    let [Some(first), Some(second)] = [a, b].map(|k| strands.get(k)) else { return false };
-    if first.source == Source::Border || second.source == Source::Border {
-        // Caps begin and end where an open offset does.
-        const TOUCH: f64 = 1e-9;
-        let touch = |p: &Strand, q: &Strand| (p.stretch.end() - q.stretch.start()).norm() < TOUCH;
-        let outermost = |k: usize| k == 0 || k + 1 == offset;
-        return (outermost(a) || outermost(b)) && (touch(first, second) || touch(second, first));
-    }
-    a + 1 == b && follows(b) || a == 0 && b + 1 == offset && follows(0)
-}
-
 struct Tracer<'a> {
     ground: &'a Ground,
-    strands: &'a [Strand],
+    untrimmed: &'a Untrimmed,
     alive: &'a [bool],
     joints: &'a [Joint],
     events: &'a [Vec<Event>],
@@ -167,10 +144,7 @@ impl Tracer<'_> {
     fn runs(&self) -> Vec<(Vec<usize>, bool)> {
         let alive = |k: usize| self.alive.get(k).is_some_and(|alive| *alive);
         let mut runs: Vec<Vec<usize>> = Vec::new();
-        for (k, strand) in self.strands.iter().enumerate() {
-            if strand.source == Source::Border {
-                break;
-            }
+        for (k, strand) in self.untrimmed.strands.iter().enumerate().take(self.untrimmed.own) {
             if !alive(k) {
                 continue;
             }
@@ -180,8 +154,8 @@ impl Tracer<'_> {
                 None => runs.push(vec![k]),
             }
         }
-        let last = self.strands.iter().take_while(|strand| strand.source != Source::Border).count().saturating_sub(1);
-        let joined = self.strands.first().is_some_and(|first| first.follows) && alive(0) && alive(last);
+        let last = self.untrimmed.own.saturating_sub(1);
+        let joined = self.untrimmed.strands.first().is_some_and(|first| first.follows) && alive(0) && alive(last);
         if joined && runs.len() > 1 {
             // The last run goes on in the first one.
             if let Some(mut head) = runs.pop() {
@@ -196,7 +170,7 @@ impl Tracer<'_> {
     /// Fragments that begin where their strand comes out of another one's reach and end where it passes in.
     fn candidates(&self) -> Vec<Fragment> {
         let mut fragments = Vec::new();
-        let last = self.strands.iter().take_while(|strand| strand.source != Source::Border).count().saturating_sub(1);
+        let last = self.untrimmed.own.saturating_sub(1);
         for (run, ring) in self.runs() {
             let way: Vec<(usize, Option<Event>)> = run
                 .iter()
@@ -253,7 +227,7 @@ impl Tracer<'_> {
             // A short fragment is looked at where it is farthest from its ends; a long one in each strand.
             let shares: &[f64] = if count <= 2 { &[0.5, 0.2, 0.8] } else { &[0.5] };
             shares.iter().all(|share| {
-                let Some(strand) = self.strands.get(k) else { return false };
+                let Some(strand) = self.untrimmed.strands.get(k) else { return false };
                 let point = strand.stretch.at(from + (to - from) * share).point;
                 self.ground.field.any_nearer(point, self.limit - ROUNDING).is_none()
             })
@@ -276,8 +250,8 @@ pub fn interval(fragment: &Fragment, joints: &[Joint], position: usize) -> [f64;
 }
 
 /// Joins fragments to loops. Errors: a fragment ends at a joint where none begins, or begins where none ends.
-fn chain(fragments: Vec<Fragment>, joints: &[Joint], strands: &[Strand]) -> Result<Vec<TracedLoop>, Undecided> {
-    let on_border = |(strand, _): (usize, f64)| strands.get(strand).is_none_or(|s| s.source == Source::Border);
+fn chain(fragments: Vec<Fragment>, joints: &[Joint], untrimmed: &Untrimmed) -> Result<Vec<TracedLoop>, Undecided> {
+    let on_border = |(strand, _): (usize, f64)| untrimmed.is_border(strand);
     // At a border an open offset ends; there is nothing to go on along.
     let goes_on = |end: End| match end {
         End::Joint(joint) => joints.get(joint).filter(|at| !on_border(at.ends) && !on_border(at.begins)).map(|_| joint),
@@ -326,7 +300,7 @@ fn chain(fragments: Vec<Fragment>, joints: &[Joint], strands: &[Strand]) -> Resu
             at = next(fragment);
         }
         let ring = run.len() == 1 && run[0].start == End::Free && run[0].end == End::Free;
-        let around = ring && run[0].strands.first().and_then(|&k| strands.get(k)).is_some_and(|s| s.follows);
+        let around = ring && run[0].strands.first().and_then(|&k| untrimmed.strands.get(k)).is_some_and(|s| s.follows);
         loops.push(TracedLoop { fragments: run, closed: closed || around });
     }
     Ok(loops)
