@@ -141,6 +141,11 @@ impl Job {
         }
     }
 
+    /// An error about the offset distance.
+    pub fn distance_error(&self, message: impl std::fmt::Display) -> InputError {
+        self.places.error(&self.places.distance, message)
+    }
+
     /// An error about the choice of a loop, or the lack of one.
     pub fn choice_error(&self, message: impl std::fmt::Display) -> InputError {
         self.places.error(&self.places.chosen, message)

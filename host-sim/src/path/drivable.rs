@@ -13,20 +13,21 @@ use super::PathPiece;
 /// How often the cut around a cusp is halved below the tolerance, to find the smallest one that does.
 const HALVINGS: i32 = 24;
 
-/// `pieces` without those that are no motion, and clear of cusps; no gap that arises is wider than `tolerance` in mm.
+/// `pieces` without those that are no motion, and clear of cusps, each with the number of the piece that it is a part of; no gap
+/// that arises is wider than `tolerance` in mm.
 ///
 /// A piece that cannot be helped in this way stays as it is, so that the loader refuses it with a reason.
-pub(super) fn drivable(pieces: Vec<PathPiece>, tolerance: f64, weight: f64) -> Vec<PathPiece> {
+pub(super) fn drivable(pieces: &[PathPiece], tolerance: f64, weight: f64) -> Vec<(usize, PathPiece)> {
     let mut kept = Vec::with_capacity(pieces.len());
-    for piece in pieces {
-        match refusal(&piece, weight) {
-            None => kept.push(piece),
+    for (number, piece) in pieces.iter().enumerate() {
+        match refusal(piece, weight) {
+            None => kept.push((number, *piece)),
             Some(_) if piece.centre_length() <= tolerance => {}
-            Some(PathError::Cusp) => match clear_of_cusp(&piece, tolerance, weight) {
-                Some(parts) => kept.extend(parts),
-                None => kept.push(piece),
+            Some(PathError::Cusp) => match clear_of_cusp(piece, tolerance, weight) {
+                Some(parts) => kept.extend(parts.into_iter().map(|part| (number, part))),
+                None => kept.push((number, *piece)),
             },
-            Some(_) => kept.push(piece),
+            Some(_) => kept.push((number, *piece)),
         }
     }
     kept
@@ -119,6 +120,11 @@ mod tests {
         marks.extend(kept.iter().flat_map(|piece| piece.interval.map(|xi| piece.point(xi))));
         marks.push(whole.point(to));
         marks.chunks(2).map(|pair| (pair[1] - pair[0]).norm()).fold(0.0, f64::max)
+    }
+
+    /// The pieces that are kept of these.
+    fn drivable(pieces: Vec<PathPiece>, tolerance: f64, weight: f64) -> Vec<PathPiece> {
+        super::drivable(&pieces, tolerance, weight).into_iter().map(|(_, piece)| piece).collect()
     }
 
     #[test]

@@ -42,32 +42,41 @@ impl Route {
         } else {
             bare(job, job.pieces.iter().map(|given| given.along))
         };
-        let mut route = Self { pieces, closed: job.contour.closed, trimmed: None };
-        route.mark_corners(job);
+        let closed = job.contour.closed;
+        let turns = turns(&pieces, &Vec::from_iter(0..pieces.len()), closed);
+        let mut route = Self { pieces, closed, trimmed: None };
+        route.mark_corners(job, turns);
         Ok(route)
     }
 
     fn trimmed(job: &Job) -> Result<Self, InputError> {
         let offset = job.trim()?;
         let number = choose(job, &offset)?;
-        let Loop { closed, pieces, .. } = &offset.loops[number];
-        let pieces = drivable(bare(job, pieces.iter().map(|piece| piece.along)), job.tolerance, job.feed.weight);
+        let Loop { closed, pieces, length, .. } = &offset.loops[number];
+        let whole = bare(job, pieces.iter().map(|piece| piece.along));
+        let (numbers, pieces): (Vec<usize>, Vec<PathPiece>) =
+            drivable(&whole, job.tolerance, job.feed.weight).into_iter().unzip();
+        if pieces.is_empty() {
+            let length = job.units.length(*length);
+            return Err(job.distance_error(format_args!(
+                "loop {number} of the trimmed offset is {length} long, too short to be a motion; take a smaller tool or \
+                 another loop"
+            )));
+        }
         let mut route = Self { pieces, closed: *closed, trimmed: None };
-        route.mark_corners(job);
+        route.mark_corners(job, turns(&whole, &numbers, *closed));
         route.trimmed = Some(Trimmed { offset, number });
         Ok(route)
     }
 
     /// Sets corners and ramps: where a given piece says so, elsewhere where the way itself turns.
-    fn mark_corners(&mut self, job: &Job) {
-        let turns = self.turns();
+    fn mark_corners(&mut self, job: &Job, turns: Vec<[f64; 2]>) {
         let feed = &job.feed;
         for (number, (piece, turns)) in self.pieces.iter_mut().zip(turns).enumerate() {
-            let corners = match job.pieces.get(number) {
+            let [start, end] = match job.pieces.get(number) {
                 Some(given) => [given.start, given.end],
                 None => turns.map(|turn| (turn.abs() > SMOOTH).then(Corner::default)),
             };
-            let [start, end] = corners;
             let [into, behind] = turns;
             piece.start_corner = start.map(|_| into);
             piece.end_corner = end.map(|_| behind);
@@ -75,26 +84,29 @@ impl Route {
             piece.end = end.and_then(|corner| corner.ramp(feed.reduction, feed.ramp, behind));
         }
     }
+}
 
-    /// The turns of the way at both ends of each piece; 0 at the free ends of an open one.
-    fn turns(&self) -> Vec<[f64; 2]> {
-        let turn = |before: Option<&PathPiece>, after: Option<&PathPiece>| match (before, after) {
-            (Some(before), Some(after)) => {
-                (before.direction(before.interval[1]).conj() * after.direction(after.interval[0])).arg()
-            }
-            _ => 0.0,
-        };
-        let pieces = &self.pieces;
-        let around = |end: Option<&'_ PathPiece>| if self.closed { end.copied() } else { None };
-        let (first, last) = (around(pieces.first()), around(pieces.last()));
-        (0..pieces.len())
-            .map(|k| {
-                let before = k.checked_sub(1).and_then(|k| pieces.get(k)).or(last.as_ref());
-                let after = pieces.get(k + 1).or(first.as_ref());
-                [turn(before, pieces.get(k)), turn(pieces.get(k), after)]
-            })
-            .collect()
-    }
+/// The turns of the way at both ends of parts of pieces, each given by the number of the piece in `whole`; 0 at free ends.
+///
+/// Where a piece was cut short or cut in two because of a cusp, its own ends tell: the way is as smooth there as it was.
+fn turns(whole: &[PathPiece], numbers: &[usize], closed: bool) -> Vec<[f64; 2]> {
+    let turn = |before: usize, after: usize| match (whole.get(before), whole.get(after)) {
+        (Some(before), Some(after)) => {
+            (before.direction(before.interval[1]).conj() * after.direction(after.interval[0])).arg()
+        }
+        _ => 0.0,
+    };
+    let around = match (numbers.first(), numbers.last()) {
+        (Some(&first), Some(&last)) if closed => turn(last, first),
+        _ => 0.0,
+    };
+    let between = numbers.windows(2).map(|pair| match *pair {
+        [before, after] if before != after => turn(before, after),
+        _ => 0.0,
+    });
+    let behind: Vec<f64> = between.chain([around]).collect();
+    let into = std::iter::once(around).chain(behind.iter().copied());
+    into.zip(behind.iter().copied()).map(|(into, behind)| [into, behind]).collect()
 }
 
 /// The curves alone.
@@ -161,6 +173,18 @@ mod tests {
         assert!((route.pieces[1].centre_length() - 2.0 * FRAC_PI_4).abs() < 1e-15);
         assert!((route.pieces[1].end_corner.unwrap() - FRAC_PI_4).abs() < 1e-15);
         assert_eq!(route.pieces[0].end_corner, None);
+    }
+
+    /// A tool that is just as round as a bend at its tightest: the loop is cut there, for the controller's sake, but it is smooth.
+    #[test]
+    fn a_cut_at_a_cusp_is_no_corner() {
+        use shared::curve::Curve as _;
+        let lobe = "[[segment]]\nhermite = { start = [-10.0, 0.0], to = [10.0, 0.0], d0 = [20.0, 60.0], d1 = [20.0, -60.0] }\n";
+        let mut job = job("closed = false", lobe);
+        job.offset = -1.0 / job.contour.segments[0].curvature(0.5);
+        let route = Route::new(&job).unwrap();
+        assert!(route.pieces.len() > 1, "no piece goes through the cusp");
+        assert!(route.pieces.iter().all(|piece| piece.start_corner.is_none() && piece.end_corner.is_none()));
     }
 
     #[test]
