@@ -38,7 +38,10 @@ pub fn loops(contour: &Contour, ground: &Ground, traced: &Traced, distance: f64)
     let trims: Vec<[f64; 2]> = traced
         .joints
         .iter()
-        .map(|joint| polish([strands.get(joint.ends.0), strands.get(joint.begins.0)], [joint.ends.1, joint.begins.1]))
+        .map(|joint| {
+            let given = [joint.ends.1, joint.begins.1];
+            if joint.exact { given } else { polish([strands.get(joint.ends.0), strands.get(joint.begins.0)], given) }
+        })
         .collect();
     let mut loops: Vec<Loop> = traced
         .loops

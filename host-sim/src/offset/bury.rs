@@ -18,16 +18,13 @@ pub fn bury(ground: &Ground, untrimmed: Untrimmed, distance: f64) -> (Untrimmed,
     let mut halved = Untrimmed { strands: Vec::with_capacity(strands.len()), own: 0 };
     let mut alive = Vec::with_capacity(strands.len());
     for (number, strand) in strands.into_iter().enumerate() {
-        if number == own {
-            halved.own = halved.strands.len();
-        }
         sift(ground, strand, distance, HALVINGS, &mut |strand: Strand, lives: bool| {
             halved.strands.push(strand);
             alive.push(lives);
         });
-    }
-    if halved.strands.len() > 0 && halved.own == 0 {
-        halved.own = halved.strands.len();
+        if number < own {
+            halved.own = halved.strands.len();
+        }
     }
     (halved, alive)
 }

@@ -2,6 +2,7 @@
 
 mod assemble;
 mod bury;
+mod close;
 mod crossing;
 mod field;
 mod foot;

@@ -73,8 +73,10 @@ impl Untrimmed {
         // The caps begin and end where an open offset does.
         const TOUCH: f64 = 1e-9;
         let (Some(one), Some(cap)) = (self.strands.get(a), self.strands.get(b)) else { return false };
-        let touch = |p: &Strand, q: &Strand| (p.stretch.end() - q.stretch.start()).norm() < TOUCH;
-        (a == 0 || a + 1 == self.own) && (touch(one, cap) || touch(cap, one))
+        let ends = |strand: &Strand| [strand.stretch.start(), strand.stretch.end()];
+        let touch = |p| ends(cap).into_iter().any(|q: Complex<f64>| (q - p).norm() < TOUCH);
+        let [start, end] = ends(one);
+        a == 0 && touch(start) || a + 1 == self.own && touch(end)
     }
 }
 
@@ -83,8 +85,7 @@ fn side(ground: &Ground, distance: f64) -> Vec<Strand> {
     let contour = &ground.contour;
     let mut strands: Vec<Strand> = Vec::new();
     let mut push = |source: Source, stretch: Stretch, gap: f64| {
-        let before = strands.last().map(|strand: &Strand| strand.stretch.end());
-        let follows = before.is_some_and(|end| joined(&stretch, end, gap));
+        let follows = strands.last().is_some_and(|before: &Strand| follows(&before.stretch, &stretch, gap));
         strands.push(Strand { source, stretch, follows, left: distance > 0.0 });
     };
     let mut gap = 0.0;
@@ -111,18 +112,18 @@ fn side(ground: &Ground, distance: f64) -> Vec<Strand> {
             fill(arc).for_each(|stretch| push(Source::Fill(number), stretch, 0.0));
         }
     }
-    // The first one follows the last one around a closed contour, if they meet.
-    if let (true, Some(end)) = (contour.closed, strands.last().map(|last| last.stretch.end()))
+    // The first one follows the last one around a closed contour.
+    if let (true, Some(last)) = (contour.closed, strands.last().copied())
         && let Some(first) = strands.first_mut()
     {
-        first.follows = joined(&first.stretch, end, gap);
+        first.follows = follows(&last.stretch, &first.stretch, gap);
     }
     strands
 }
 
-/// Whether a stretch begins at `end`, as well as the contour meets there.
-fn joined(stretch: &Stretch, end: Complex<f64>, gap: f64) -> bool {
-    (stretch.start() - end).norm() < JOINED + 2.0 * gap
+/// Whether one stretch begins where the one before it ends, as well as the contour meets there.
+fn follows(before: &Stretch, stretch: &Stretch, gap: f64) -> bool {
+    (stretch.start() - before.end()).norm() < JOINED + 2.0 * gap
 }
 
 /// A fill arc in stretches.

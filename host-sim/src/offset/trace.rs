@@ -8,6 +8,7 @@
 use std::collections::HashMap;
 
 use super::bury::bury;
+use super::close::close;
 use super::crossing::{Crossing, crossings};
 use super::field::Field;
 use super::ground::Ground;
@@ -34,6 +35,8 @@ pub struct Joint {
     pub ends: (usize, f64),
     /// The strand that it goes on along.
     pub begins: (usize, f64),
+    /// Whether Newton's method could only spoil it.
+    pub exact: bool,
 }
 
 /// A run of fragments.
@@ -82,7 +85,7 @@ struct Event {
 pub fn trace(ground: &Ground, distance: f64) -> Result<Traced, Undecided> {
     let (untrimmed, alive) = bury(ground, Untrimmed::new(ground, distance), distance);
     let limit = distance.abs();
-    let (joints, events) = meet(&untrimmed, &alive);
+    let (joints, events) = meet(&untrimmed, &alive, close(ground, &untrimmed, &alive, limit));
     let tracer = Tracer { ground, untrimmed: &untrimmed, alive: &alive, joints: &joints, events: &events, limit };
     let fragments: Vec<Fragment> =
         tracer.candidates().into_iter().filter(|fragment| tracer.is_clear(fragment)).collect();
@@ -91,7 +94,7 @@ pub fn trace(ground: &Ground, distance: f64) -> Result<Traced, Undecided> {
 }
 
 /// All crossings of strands that are not buried.
-fn meet(untrimmed: &Untrimmed, alive: &[bool]) -> (Vec<Joint>, Vec<Vec<Event>>) {
+fn meet(untrimmed: &Untrimmed, alive: &[bool], close: Vec<Joint>) -> (Vec<Joint>, Vec<Vec<Event>>) {
     let strands = &untrimmed.strands;
     let numbers: Vec<usize> = alive.iter().enumerate().filter(|(_, alive)| **alive).map(|(k, _)| k).collect();
     let field = Field::new(numbers.iter().filter_map(|&k| Some(strands.get(k)?.stretch)).collect());
@@ -101,7 +104,8 @@ fn meet(untrimmed: &Untrimmed, alive: &[bool]) -> (Vec<Joint>, Vec<Vec<Event>>) 
     field.pairs(|i, j| {
         let [Some(&a), Some(&b)] = [i, j].map(|k| numbers.get(k)) else { return };
         let [Some(first), Some(second)] = [a, b].map(|k| strands.get(k)) else { return };
-        if untrimmed.is_border(a) || untrimmed.neighbours(a, b) {
+        let joined = |joint: &Joint| [(a, b), (b, a)].contains(&(joint.ends.0, joint.begins.0));
+        if untrimmed.is_border(a) || untrimmed.neighbours(a, b) || close.iter().any(joined) {
             return;
         }
         found.clear();
@@ -113,9 +117,9 @@ fn meet(untrimmed: &Untrimmed, alive: &[bool]) -> (Vec<Joint>, Vec<Vec<Event>>) 
             let joint = joints.len();
             let sides = [(a, xi), (b, eta)];
             joints.push(if into {
-                Joint { ends: sides[0], begins: sides[1] }
+                Joint { ends: sides[0], begins: sides[1], exact: false }
             } else {
-                Joint { ends: sides[1], begins: sides[0] }
+                Joint { ends: sides[1], begins: sides[0], exact: false }
             });
             for (side, (strand, tau)) in sides.into_iter().enumerate() {
                 if let Some(events) = events.get_mut(strand) {
@@ -124,6 +128,14 @@ fn meet(untrimmed: &Untrimmed, alive: &[bool]) -> (Vec<Joint>, Vec<Vec<Event>>) 
             }
         }
     });
+    for joint in close {
+        for ((strand, tau), begins) in [(joint.ends, false), (joint.begins, true)] {
+            if let Some(events) = events.get_mut(strand) {
+                events.push(Event { tau, joint: joints.len(), begins });
+            }
+        }
+        joints.push(joint);
+    }
     for events in &mut events {
         events.sort_by(|a, b| a.tau.total_cmp(&b.tau));
     }

@@ -1,0 +1,60 @@
+//! Trim points that are too flat to be found as crossings.
+//!
+//! Where two strands pass each other under a small angle a, over a length l, they differ in height by a l / 2. At a concave node
+//! that turns by a, l is |d| a; at the mouth of a neck, l is the neck's width. If that height drowns in rounding, no sign tells
+//! that they cross. But then the ends that reach beyond the crossing reach so little beyond it that C is no nearer to them than
+//! |d|, to rounding. So such ends are looked for, and joined half-way.
+
+use shared::complex::Complex;
+
+use super::ground::Ground;
+use super::strand::Untrimmed;
+use super::stretch::At;
+use super::trace::Joint;
+
+/// An end that is nearer to C than |d| by no more than this, in the unit of the frame, is not covered for certain.
+const UNCERTAIN: f64 = 1e-13;
+
+/// Ends farther from each other than this do not belong together.
+const NEAR: f64 = 1e-6;
+
+/// Joins ends of strands that nothing covers for certain with the nearest such beginnings.
+pub fn close(ground: &Ground, untrimmed: &Untrimmed, alive: &[bool], limit: f64) -> Vec<Joint> {
+    let own = untrimmed.own;
+    let lives = |k: usize| alive.get(k) == Some(&true);
+    let next = |k: usize| if k + 1 < own { k + 1 } else { 0 };
+    // Strand `next(k)` goes on where strand `k` ends.
+    let goes_on = |k: usize| lives(next(k)) && lives(k) && untrimmed.strands.get(next(k)).is_some_and(|s| s.follows);
+    let open = |point: Complex<f64>| ground.field.any_nearer(point, limit - UNCERTAIN).is_none();
+    let mut ends: Vec<(usize, At)> = Vec::new();
+    let mut starts: Vec<(usize, At)> = Vec::new();
+    for k in 0..own {
+        let Some(stretch) = untrimmed.strands.get(k).filter(|_| lives(k)).map(|strand| strand.stretch) else {
+            continue;
+        };
+        let free = |number: usize| !ground.contour.closed && number == 0;
+        if !goes_on(k) && !free(next(k)) && open(stretch.end()) {
+            ends.push((k, stretch.at(0.5)));
+        }
+        let before = if k > 0 { k - 1 } else { own - 1 };
+        if !goes_on(before) && !free(k) && open(stretch.start()) {
+            starts.push((k, stretch.at(-0.5)));
+        }
+    }
+    let mut joints = Vec::new();
+    for (strand, end) in ends {
+        let apart = |start: &At| (start.point - end.point).norm();
+        let nearest = (0..starts.len()).min_by(|&a, &b| apart(&starts[a].1).total_cmp(&apart(&starts[b].1)));
+        let Some(position) = nearest.filter(|&k| apart(&starts[k].1) < NEAR) else { continue };
+        let (other, start) = starts.swap_remove(position);
+        // Where they stand over each other, half of that is cut from each.
+        let over = (end.point - start.point).dot(end.tangent).max(0.0) * 0.5;
+        let within = |tau: f64| tau.clamp(-0.5, 0.5);
+        joints.push(Joint {
+            ends: (strand, within(0.5 - over / end.speed)),
+            begins: (other, within(over / start.speed - 0.5)),
+            exact: true,
+        });
+    }
+    joints
+}
