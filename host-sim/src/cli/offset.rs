@@ -17,9 +17,9 @@ use super::output::{failed, json, write};
 #[derive(Args)]
 #[command(after_help = "Example:\n  hodograph offset examples/pocket.toml --distance -4 --svg pocket.svg --check")]
 pub struct OffsetVerb {
-    /// The contour, in TOML; it needs no [feed]
+    /// The contour, in TOML; it needs no `[feed]`
     contour: String,
-    /// The tool's radius in the contour's units: positive right of travel, negative left of it; the contour's own [offset]
+    /// The tool's radius in the contour's units: positive right of travel, negative left of it; the contour's own `[offset]`
     /// without it
     #[arg(long, value_name = "D", allow_negative_numbers = true)]
     distance: Option<f64>,

@@ -125,7 +125,7 @@ impl Job {
         self.places.trim(&self.contour, self.offset, self.units)
     }
 
-    /// An error about a piece of the path: at its [[piece]] where the job gives its pieces, at the [[segment]] that it runs
+    /// An error about a piece of the path: at its `[[piece]]` where the job gives its pieces, at the `[[segment]]` that it runs
     /// along where it does not.
     pub fn piece_error(&self, piece: usize, along: Along, message: impl std::fmt::Display) -> InputError {
         if !self.pieces.is_empty() {

@@ -60,8 +60,10 @@ pub fn offsets(job: &Job, path: &Path, undercuts: &[Undercut]) -> Result<[Pictur
 /// Contour, untrimmed and trimmed offset, trim points and what the tool leaves, in one picture.
 pub fn trimming(part: &Part, offset: &Offset, undercuts: &[Undercut]) -> Result<Picture, ReportError> {
     let outlines = Outlines::of_offset(&part.contour, offset).leaving(&part.contour, offset, undercuts);
-    let tool = outlines.tool(undercuts);
     let radius = offset.distance.abs();
+    // A tool larger than the contour would leave no room for it in the picture.
+    let [low, high] = part.contour.extent();
+    let tool = outlines.tool(undercuts).filter(|_| 2.0 * radius < (high - low).norm());
     let box_of = |place: Place| [place - Place::new(radius, radius), place + Place::new(radius, radius)];
     let view = View::around(outlines.all().chain(tool.into_iter().flat_map(box_of)), part.units.mm());
     let title = format!("The trimmed offset of {} at distance {}", part.name(), part.units.length(offset.distance));
