@@ -7,6 +7,7 @@
 
 use shared::complex::Complex;
 
+use super::bury::Cover;
 use super::ground::Ground;
 use super::strand::Untrimmed;
 use super::stretch::At;
@@ -19,9 +20,9 @@ const UNCERTAIN: f64 = 1e-13;
 const NEAR: f64 = 1e-6;
 
 /// Joins ends of strands that nothing covers for certain with the nearest such beginnings.
-pub fn close(ground: &Ground, untrimmed: &Untrimmed, alive: &[bool], limit: f64) -> Vec<Joint> {
+pub fn close(ground: &Ground, untrimmed: &Untrimmed, covers: &[Cover], limit: f64) -> Vec<Joint> {
     let own = untrimmed.own;
-    let lives = |k: usize| alive.get(k) == Some(&true);
+    let lives = |k: usize| covers.get(k).is_some_and(|cover| *cover != Cover::Buried);
     let next = |k: usize| if k + 1 < own { k + 1 } else { 0 };
     // Strand `next(k)` goes on where strand `k` ends.
     let goes_on = |k: usize| lives(next(k)) && lives(k) && untrimmed.strands.get(next(k)).is_some_and(|s| s.follows);

@@ -160,44 +160,63 @@ impl fmt::Display for OffsetError {
 
 impl std::error::Error for OffsetError {}
 
-/// By how much |d| is changed, relatively, to find which pieces there are; one after the other until they join.
+/// How often another |d| and another turn of the frame are tried where pieces do not join, or where some are missing.
+const ATTEMPTS: u32 = 32;
+
+/// By how much |d| is changed, relatively, to find which pieces there are, and by how much the frame is turned, in radians.
 ///
 /// A tool that just fits a slot, a node that falls on a trim point, three walls at one distance: exactly at d such a thing can be
-/// decided neither way, a little beside it it can. The first one is a little smaller, so that a tool that just fits does fit.
-/// Trim points are made exact at d afterwards, and no clearance falls short of |d| by more than this.
-const NUDGES: [f64; 8] = [-1e-11, -3.1e-11, 1.7e-11, -7.3e-11, 5.3e-11, -1.9e-10, 2.3e-10, -6.1e-10];
+/// decided neither way, a little beside it it can. The first change is to a little less, so that a tool that just fits does fit.
+/// Trim points are made exact at d afterwards, and no clearance falls short of |d| by more than 6.4e-10 of it. Turning, by the
+/// golden angle, lets rounding fall differently.
+fn attempt(number: u32) -> (f64, f64) {
+    let side = if number.is_multiple_of(2) { -1.0 } else { 1.0 };
+    let number = f64::from(number);
+    (side * 1e-11 * (1.0 + 1.97 * number), 2.399_963_229_728_653 * number)
+}
 
 /// The trimmed offset of `contour` at the signed `distance` in mm.
 pub fn trim(contour: &Contour, distance: f64) -> Result<Offset, OffsetError> {
     if !(distance != 0.0 && distance.is_finite()) {
         return Err(OffsetError::Distance);
     }
-    let ground = Ground::new(contour, distance)?;
+    let mut ground = Ground::new(contour, distance, 0.0)?;
     ground.check_simple()?;
     let exact = ground.to_frame(distance);
-    for nudge in NUDGES {
-        let Ok(traced) = trace(&ground, exact * (1.0 + nudge)) else { continue };
-        let loops = assemble::loops(contour, &ground, &traced, distance);
-        if loops.is_empty() {
-            return Err(OffsetError::Empty { largest: largest_fitting(contour, distance) });
+    let mut best: Option<(usize, Vec<Loop>)> = None;
+    for number in 0..ATTEMPTS {
+        let (nudge, angle) = attempt(number);
+        if number > 0 {
+            ground = Ground::new(contour, distance, angle)?;
         }
-        return Ok(Offset { distance, loops });
+        let Ok(traced) = trace(&ground, exact * (1.0 + nudge)) else { continue };
+        if best.as_ref().is_none_or(|&(lost, _)| traced.lost < lost) {
+            best = Some((traced.lost, assemble::loops(contour, &ground, &traced, distance)));
+        }
+        if traced.lost == 0 {
+            break;
+        }
     }
-    Err(OffsetError::Degenerate)
+    match best {
+        Some((_, loops)) if !loops.is_empty() => Ok(Offset { distance, loops }),
+        Some(_) => Err(OffsetError::Empty { largest: largest_fitting(contour, distance) }),
+        None => Err(OffsetError::Degenerate),
+    }
 }
 
 /// Where the tool of `offset` leaves material on `contour`, in order along C.
 pub fn undercuts(contour: &Contour, offset: &Offset) -> Vec<Undercut> {
-    Ground::new(contour, offset.distance).map_or_else(|_| Vec::new(), |ground| undercut::undercuts(&ground, offset))
+    Ground::new(contour, offset.distance, 0.0)
+        .map_or_else(|_| Vec::new(), |ground| undercut::undercuts(&ground, offset))
 }
 
 /// The radius of the largest tool that reaches every point of `contour` from the side of `side`'s sign (positive: right of
 /// travel), in mm; 0 where a sharp concave corner keeps every tool out, infinite where none is too large. Good to 1e-7 of itself.
 pub fn largest_reaching(contour: &Contour, side: f64) -> f64 {
-    Ground::new(contour, 0.0).map_or(0.0, |ground| ground.to_mm(Reach::new(&ground, side).everywhere()))
+    Ground::new(contour, 0.0, 0.0).map_or(0.0, |ground| ground.to_mm(Reach::new(&ground, side).everywhere()))
 }
 
 /// The radius of the largest tool that touches any point of `contour` from that side, in mm; infinite where none is too large.
 pub fn largest_fitting(contour: &Contour, side: f64) -> f64 {
-    Ground::new(contour, 0.0).map_or(0.0, |ground| ground.to_mm(Reach::new(&ground, side).anywhere()))
+    Ground::new(contour, 0.0, 0.0).map_or(0.0, |ground| ground.to_mm(Reach::new(&ground, side).anywhere()))
 }
