@@ -238,6 +238,26 @@ mod tests {
         assert_eq!((lines[0], lines[12]), (first, "and in 3 more places, 3 mm at most"));
     }
 
+    /// The sentence of a check that fails; its status is that of a failed run.
+    #[test]
+    fn failed_check_says_where_and_by_how_much() {
+        let at = [1.5, -2.0];
+        let check = Check {
+            holds: false,
+            smallest_clearance: 1.99,
+            at,
+            largest_removed: 0.0,
+            largest_undercut: 0.0,
+            samples: 9,
+        };
+        let said = too_near("part.toml", &result(&[]), &check);
+        assert!(
+            said.starts_with("part.toml: the check failed: at (1.5, -2) the path is 1.99 mm from the contour"),
+            "{said}"
+        );
+        assert!(said.contains("nearer than |d| = 2 mm") && said.lines().count() == 1);
+    }
+
     #[test]
     fn reach_names_the_corner_that_forbids_it() {
         let mut result = result(&[]);

@@ -51,8 +51,7 @@ impl Route {
 
     fn trimmed(job: &Job) -> Result<Self, InputError> {
         let offset = job.trim()?;
-        let number = choose(job, &offset)?;
-        let Loop { closed, pieces, length, .. } = &offset.loops[number];
+        let (number, Loop { closed, pieces, length, .. }) = choose(job, &offset)?;
         let whole = bare(job, pieces.iter().map(|piece| piece.along));
         let (numbers, pieces): (Vec<usize>, Vec<PathPiece>) =
             drivable(&whole, job.tolerance, job.feed.weight).into_iter().unzip();
@@ -114,24 +113,27 @@ fn bare(job: &Job, along: impl Iterator<Item = Along>) -> Vec<PathPiece> {
     along.filter_map(|along| PathPiece::new(&job.contour, along, job.offset, job.feed.rate)).collect()
 }
 
-/// The number of the loop that a job runs.
-fn choose(job: &Job, offset: &Offset) -> Result<usize, InputError> {
-    let count = offset.loops.len();
-    let last = count.saturating_sub(1);
-    match job.chosen {
-        Some(number) if number < count => Ok(number),
-        Some(number) if count == 1 => {
-            Err(job.choice_error(format_args!("there is no loop {number}; the trimmed offset is the one loop 0")))
-        }
-        Some(number) => Err(job.choice_error(format_args!(
-            "there is no loop {number}; the trimmed offset has {count} loops, numbered from 0 to {last}"
-        ))),
-        None if count == 1 => Ok(0),
-        None => Err(job.choice_error(format_args!(
-            "the trimmed offset has {count} loops, and a run is one of them; choose it with --loop or with `loop` under \
-             [offset], from 0 to {last} as `hodograph offset` numbers them"
-        ))),
+/// The loop that a job runs, and its number.
+fn choose<'a>(job: &Job, offset: &'a Offset) -> Result<(usize, &'a Loop), InputError> {
+    let loops = &offset.loops;
+    let last = loops.len().saturating_sub(1);
+    if let (None, [only]) = (job.chosen, loops.as_slice()) {
+        return Ok((0, only));
     }
+    let Some(number) = job.chosen else {
+        return Err(job.choice_error(format_args!(
+            "the trimmed offset has {} loops, and a run is one of them; choose it with --loop or with `loop` under [offset], \
+             from 0 to {last} as `hodograph offset` numbers them",
+            loops.len()
+        )));
+    };
+    loops.get(number).map(|found| (number, found)).ok_or_else(|| match last {
+        0 => job.choice_error(format_args!("there is no loop {number}; the trimmed offset is the one loop 0")),
+        _ => job.choice_error(format_args!(
+            "there is no loop {number}; the trimmed offset has {} loops, numbered from 0 to {last}",
+            loops.len()
+        )),
+    })
 }
 
 #[cfg(test)]

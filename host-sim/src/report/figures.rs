@@ -18,6 +18,8 @@ use crate::simulate::Sample;
 const SINGLE: f64 = 300.0;
 /// The height of a chart of several strips.
 const STACKED: f64 = 560.0;
+/// More rings than this would hide the path.
+const MOST_RINGS: usize = 300;
 const CONTOUR: Stroke = Stroke::new(INK, 2.0);
 const UNTRIMMED: Stroke = Stroke::new(OTHER, 1.7);
 const TRIMMED: Stroke = Stroke::new(MAIN, 2.4);
@@ -86,7 +88,7 @@ pub fn trimming(part: &Part, offset: &Offset, undercuts: &[Undercut]) -> Result<
 /// What there is to be seen beside lines.
 fn marks(outlines: &Outlines, left: &'static str) -> Vec<(Mark, &'static str)> {
     let entries = [
-        (!outlines.corners.is_empty(), Mark::Ring(INK, PAPER), "trim point"),
+        ((1..=MOST_RINGS).contains(&outlines.corners.len()), Mark::Ring(INK, PAPER), "trim point"),
         (!outlines.left.is_empty(), Mark::Area(LEFT), left),
     ];
     entries.into_iter().filter(|entry| entry.0).map(|(_, mark, text)| (mark, text)).collect()
@@ -314,8 +316,7 @@ impl View {
 
     /// A ring at every corner; where there are so many that they would hide the path, none.
     fn rings(&self, canvas: &mut Canvas<'_>, outlines: &Outlines) -> Result<(), ReportError> {
-        const MOST: usize = 300;
-        for &corner in outlines.corners.iter().filter(|_| outlines.corners.len() <= MOST) {
+        for &corner in outlines.corners.iter().filter(|_| outlines.corners.len() <= MOST_RINGS) {
             canvas.ring(self.at(corner), 5.5, INK, PAPER)?;
         }
         Ok(())

@@ -142,12 +142,14 @@ impl Strip {
     }
 }
 
-/// The segments of an undercut with their parameters; behind the end of a closed contour it goes on at its start.
+/// The segments of an undercut with their parameters; behind the end of a closed contour it goes on at its start, and the end of
+/// an open one may be told as that start.
 fn parts(contour: &Contour, undercut: &Undercut) -> Vec<(usize, f64, f64)> {
     let ((first, from), (last, to)) = (undercut.from, undercut.to);
     let count = contour.segments.len();
     let onward = (first, from) < (last, to);
-    let span = if onward { last.saturating_sub(first) } else { (last + count).saturating_sub(first) };
+    let (last, to) = if onward || contour.closed { (last, to) } else { (count.saturating_sub(1), 1.0) };
+    let span = if onward || !contour.closed { last } else { last + count }.saturating_sub(first);
     (0..=span)
         .map(|k| {
             let start = if k == 0 { from } else { 0.0 };
