@@ -11,10 +11,11 @@ use super::bury::Cover;
 use super::ground::Ground;
 use super::strand::Untrimmed;
 use super::stretch::At;
-use super::trace::Joint;
+use super::trace::{Joint, ROUNDING};
 
-/// An end that is nearer to C than |d| by no more than this, in the unit of the frame, is not covered for certain.
-const UNCERTAIN: f64 = 1e-13;
+/// An end that is nearer to C than |d| by no more than this, in the unit of the frame and as a part of |d|, is not covered for
+/// certain.
+const UNCERTAIN: [f64; 2] = [1e-13, 1e-10];
 
 /// Ends farther from each other than this do not belong together.
 const NEAR: f64 = 1e-6;
@@ -26,7 +27,9 @@ pub fn close(ground: &Ground, untrimmed: &Untrimmed, covers: &[Cover], limit: f6
     let next = |k: usize| if k + 1 < own { k + 1 } else { 0 };
     // Strand `next(k)` goes on where strand `k` ends.
     let goes_on = |k: usize| lives(next(k)) && lives(k) && untrimmed.strands.get(next(k)).is_some_and(|s| s.follows);
-    let open = |point: Complex<f64>| ground.field.any_nearer(point, limit - UNCERTAIN).is_none();
+    let [absolute, relative] = UNCERTAIN;
+    let certain = limit - absolute.min(relative * limit).max(ROUNDING);
+    let open = |point: Complex<f64>| ground.field.any_nearer(point, certain).is_none();
     let mut ends: Vec<(usize, At)> = Vec::new();
     let mut starts: Vec<(usize, At)> = Vec::new();
     for k in 0..own {
@@ -50,12 +53,25 @@ pub fn close(ground: &Ground, untrimmed: &Untrimmed, covers: &[Cover], limit: f6
         let (other, start) = starts.swap_remove(position);
         // Where they stand over each other, half of that is cut from each.
         let over = (end.point - start.point).dot(end.tangent).max(0.0) * 0.5;
-        let within = |tau: f64| tau.clamp(-0.5, 0.5);
+        let cut = |number: usize, from: f64, to: f64, at: &At| {
+            let way = |tau: f64| untrimmed.strands[number].stretch.at(tau).point - at.point;
+            let ahead = |tau: f64| way(tau).dot(at.tangent).abs() - over;
+            if over > 0.0 { zero_between(ahead, from, to) } else { from }
+        };
         joints.push(Joint {
-            ends: (strand, within(0.5 - over / end.speed)),
-            begins: (other, within(over / start.speed - 0.5)),
+            ends: (strand, cut(strand, 0.5, -0.5, &end)),
+            begins: (other, cut(other, -0.5, 0.5, &start)),
             exact: true,
         });
     }
     joints
+}
+
+/// Where a function that rises from below zero at `from` passes zero before `to`, by halving; `to` where it does not.
+fn zero_between(function: impl Fn(f64) -> f64, mut from: f64, mut to: f64) -> f64 {
+    for _ in 0..60 {
+        let middle = 0.5 * (from + to);
+        if function(middle) < 0.0 { from = middle } else { to = middle }
+    }
+    to
 }

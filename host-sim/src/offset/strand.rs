@@ -8,8 +8,8 @@ use shared::curve::{Arc, Curve as _, Segment};
 use super::ground::Ground;
 use super::stretch::{Stretch, TURN, cusps};
 
-/// Ends of strands that follow each other along C and are nearer than this to each other, in the unit of the frame, are joined:
-/// smooth nodes, and loops too small to be seen.
+/// Ends of strands that follow each other along C and are nearer to each other than this part of |d| are joined: smooth nodes, and
+/// loops too small to be seen. Half of it may be lacking from the clearance there.
 const JOINED: f64 = 1e-10;
 
 /// What a strand runs along.
@@ -84,8 +84,10 @@ impl Untrimmed {
 fn side(ground: &Ground, distance: f64) -> Vec<Strand> {
     let contour = &ground.contour;
     let mut strands: Vec<Strand> = Vec::new();
+    let near = (JOINED * distance.abs()).max(1e-15);
     let mut push = |source: Source, stretch: Stretch, gap: f64| {
-        let follows = strands.last().is_some_and(|before: &Strand| follows(&before.stretch, &stretch, gap));
+        let follows =
+            strands.last().is_some_and(|before: &Strand| follows(&before.stretch, &stretch, near + 2.0 * gap));
         strands.push(Strand { source, stretch, follows, left: distance > 0.0 });
     };
     let mut gap = 0.0;
@@ -107,7 +109,7 @@ fn side(ground: &Ground, distance: f64) -> Vec<Strand> {
         }
         gap = ground.gap(number);
         if let Some(arc) = contour.fill_arc(number, distance)
-            && arc.sweep * distance > JOINED
+            && arc.sweep * distance > near
         {
             fill(arc).for_each(|stretch| push(Source::Fill(number), stretch, 0.0));
         }
@@ -116,14 +118,14 @@ fn side(ground: &Ground, distance: f64) -> Vec<Strand> {
     if let (true, Some(last)) = (contour.closed, strands.last().copied())
         && let Some(first) = strands.first_mut()
     {
-        first.follows = follows(&last.stretch, &first.stretch, gap);
+        first.follows = follows(&last.stretch, &first.stretch, near + 2.0 * gap);
     }
     strands
 }
 
-/// Whether one stretch begins where the one before it ends, as well as the contour meets there.
-fn follows(before: &Stretch, stretch: &Stretch, gap: f64) -> bool {
-    (stretch.start() - before.end()).norm() < JOINED + 2.0 * gap
+/// Whether one stretch begins where the one before it ends.
+fn follows(before: &Stretch, stretch: &Stretch, near: f64) -> bool {
+    (stretch.start() - before.end()).norm() < near
 }
 
 /// A fill arc in stretches.
