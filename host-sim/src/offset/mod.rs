@@ -25,6 +25,7 @@ use reach::Reach;
 use trace::trace;
 
 pub use crate::contour::{Along, Contour};
+use crate::units::Units;
 
 /// The trimmed offset: all points of the untrimmed one that are nowhere nearer to C than |d|.
 #[derive(Clone, Debug, PartialEq)]
@@ -112,9 +113,48 @@ pub enum OffsetError {
     Degenerate,
 }
 
+impl OffsetError {
+    /// What was found and what would do, in one sentence, for an offset at `distance` mm; its lengths are in `units`.
+    pub fn sentence(&self, distance: f64, units: Units) -> String {
+        self.describe(&format!(" at distance {}", units.length(distance)), units)
+    }
+
+    /// The sentence with `at_distance` behind what is so at this distance alone.
+    fn describe(&self, at_distance: &str, units: Units) -> String {
+        let point = |at| units.point(at);
+        match *self {
+            Self::Distance => "the offset distance is zero or not a number; give the radius of a tool".to_string(),
+            Self::Crossing { segments: [one, other], at } if one == other => {
+                format!("the contour crosses itself: segment {one} does at {}; {UNCROSSED}", point(at))
+            }
+            Self::Crossing { segments: [one, other], at } => {
+                format!("the contour crosses itself: segments {one} and {other} meet at {}; {UNCROSSED}", point(at))
+            }
+            Self::Cusp { segment } => format!(
+                "segment {segment} stands still inside and turns back there, so it has no normal; make two segments of it"
+            ),
+            Self::Reversal { node } => format!(
+                "at node {node}, where segment {node} ends, the contour goes back the way it came; no tool fits in between, \
+                 so leave the way back out or keep it apart"
+            ),
+            Self::Empty { largest } if largest > 0.0 => {
+                format!("no path is left{at_distance}: the largest tool that fits has radius {}", units.length(largest))
+            }
+            Self::Empty { .. } => format!("no path is left{at_distance}: no tool fits on this side of the contour"),
+            Self::Degenerate => format!(
+                "the offset{at_distance} is degenerate: its pieces do not join to loops, nor do those within 1e-9 of it; a \
+                 slightly different distance will do"
+            ),
+        }
+    }
+}
+
+const UNCROSSED: &str = "only a contour that does not cross itself has a tool side and a part side";
+
+/// As [`OffsetError::sentence`] in mm, but without the distance, which an error does not know.
 impl fmt::Display for OffsetError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{self:?}")
+        f.write_str(&self.describe("", Units::Mm))
     }
 }
 
