@@ -10,7 +10,7 @@ use super::settings::{Pin, StepSettings};
 use super::{MOST_SLOTS, StepFault};
 use crate::fixed::{Fixed, UNITS_PER_MM};
 
-/// Binary places of an instant, in slots: 12 bits before the point make room for [`super::MOST_SLOTS`] and the sign.
+/// Binary places of an instant, in slots: 13 bits before the point make room for [`MOST_SLOTS`] and a distance that is no longer.
 const PLACES: u32 = 19;
 
 /// Added to every instant, in 2^-[`PLACES`] slots: 2^-7 slot, above the error of an instant, so that a step is never a whole slot

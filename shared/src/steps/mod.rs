@@ -27,7 +27,8 @@
 //! | three axes at 900 000 steps/s each, 1875 or 3750 slots | 25 000 or 26 000 |
 //! | three axes at 100 000 steps/s each, 1875 or 3750 slots | 4 700 or 5 600 |
 //!
-//! No loop runs longer than once a pulse, of which a tick holds at most half as many as slots. No panic path, no `f64`, no call but its own.
+//! No loop runs longer than once a pulse, of which a tick holds at most half as many as slots: three axes that are all asked for too much
+//! take 26 000 or 52 000. No panic path, no `f64`, no call but its own. A ring takes 8 bytes a slot.
 
 mod axis;
 pub mod decoder;
@@ -91,7 +92,7 @@ pub struct StepAxes<const AXES: usize, const PORTS: usize, const SLOTS: usize> {
 #[derive(Clone, Copy, Debug)]
 pub struct StepState<const AXES: usize> {
     axes: [AxisState; AXES],
-    /// For each half, the ports in which something has been written; one bit a port.
+    /// For each half, the ports in which something may be written; one bit a port.
     written: [u8; 2],
 }
 
@@ -112,10 +113,10 @@ impl<const AXES: usize, const PORTS: usize, const SLOTS: usize> StepAxes<AXES, P
         Self { axes, nothing: 0 }
     }
 
-    /// The state of axes that rest at `position`, with both halves of the rings clear and all pins as [`StepAxes::idle`]
-    /// makes them.
+    /// The state of axes that rest at `position`, with all pins as [`StepAxes::idle`] makes them. Whatever the rings hold is cleared by
+    /// the first [`StepAxes::fill`] of each half; what is played before that must be 0.
     pub fn at_rest(&self, position: [Fixed; AXES]) -> StepState<AXES> {
-        let mut state = StepState { axes: [AxisState::new(); AXES], written: [0; 2] };
+        let mut state = StepState { axes: [AxisState::new(); AXES], written: [u8::MAX; 2] };
         self.stand_at(&mut state, position);
         state
     }

@@ -42,7 +42,8 @@ fn words_are_those_of_a_set_and_reset_register() {
     let axes: StepAxes<1, 2, 16> = StepSettings::activate(&[settings]).unwrap();
     let mut state = axes.at_rest([Fixed(0)]);
     assert_eq!(axes.idle(), [1 << 18, 1 << 15]);
-    let (mut a, mut b) = ([0; 16], [0; 16]);
+    // What the memory held before is cleared.
+    let (mut a, mut b) = ([5; 16], [6; 16]);
     axes.fill(&mut state, [Fixed(-MM)], Half::First, [&mut a, &mut b]).unwrap();
     let mut expected = ([0; 16], [0; 16]);
     expected.0[0] = 1 << 2;
@@ -53,6 +54,7 @@ fn words_are_those_of_a_set_and_reset_register() {
     axes.fill(&mut state, [Fixed(-MM)], Half::First, [&mut a, &mut b]).unwrap();
     assert_eq!((a, b), ([0; 16], [0; 16]));
     let (mut mark, mut other) = ([7; 16], [9; 16]);
+    axes.fill(&mut state, [Fixed(-MM)], Half::Second, [&mut a, &mut b]).unwrap();
     axes.fill(&mut state, [Fixed(-MM)], Half::Second, [&mut mark, &mut other]).unwrap();
     axes.fill(&mut state, [Fixed(-MM)], Half::First, [&mut mark, &mut other]).unwrap();
     assert_eq!((mark, other), ([7; 16], [9; 16]));
