@@ -143,3 +143,24 @@ fn open_contour_has_an_open_path() {
     let length = value["centre_length"].as_f64().unwrap();
     assert!((length - (70.0 + 2.0 * FRAC_PI_2)).abs() < 1e-9, "{length}");
 }
+
+/// The pictures in `docs/` are those that the command beside them draws.
+#[test]
+fn documentation_pictures_are_the_programs() {
+    let root = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("..");
+    for (example, picture) in [("farouki2018", "trimming"), ("pocket", "pocket")] {
+        let drawn = nowhere(&format!("{picture}.svg"));
+        let output = std::process::Command::new(env!("CARGO_BIN_EXE_hodograph"))
+            .current_dir(&root)
+            .args(["offset", &format!("examples/{example}.toml"), "--svg"])
+            .arg(&drawn)
+            .output()
+            .unwrap();
+        assert!(output.status.success());
+        let [drawn, kept] = [drawn, root.join(format!("docs/{picture}.svg"))].map(|p| std::fs::read(p).unwrap());
+        assert!(
+            drawn == kept,
+            "docs/{picture}.svg: draw it again with `hodograph offset examples/{example}.toml --svg`"
+        );
+    }
+}

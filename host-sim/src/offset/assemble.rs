@@ -88,7 +88,7 @@ fn polish(strands: [Option<&Stretch>; 2], given: [f64; 2]) -> [f64; 2] {
         tau = [tau[0] + a, tau[1] + b];
         let moved = (first.at(tau[0]).point - first.at(given[0]).point).norm()
             + (second.at(tau[1]).point - second.at(given[1]).point).norm();
-        if !(moved < POLISH) {
+        if moved.is_nan() || moved >= POLISH {
             break;
         }
         if gap(tau) <= gap(best) {

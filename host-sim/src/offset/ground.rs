@@ -137,5 +137,5 @@ fn has_cusp(curve: &PhQuintic<f64>) -> bool {
     let sigma = curve.speed_coefficients();
     let slope = [0, 1, 2, 3].map(|k| sigma[k + 1] - sigma[k]);
     let places = super::roots::zeros(slope).into_iter().chain([0.0, 1.0]);
-    places.map(|xi| curve.speed(xi)).any(|speed| !(speed > SLOWEST * SLOWEST * fastest))
+    places.map(|xi| curve.speed(xi)).any(|speed| speed.is_nan() || speed <= SLOWEST * SLOWEST * fastest)
 }

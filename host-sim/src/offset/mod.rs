@@ -1,9 +1,44 @@
 //! The exact trimmed offset of any contour: the path of a tool's centre that touches the part and never cuts into it.
+//!
+//! Nothing is made of small lines. Every piece of the result is a part of a segment of the contour at the distance d, or of the arc
+//! about a node; what is computed is where it begins and ends.
+//!
+//! <div style="max-width: 32rem">
+#![doc = include_str!("../../../docs/trimming.svg")]
+//! </div>
+//!
+//! `hodograph offset examples/farouki2018.toml --svg docs/trimming.svg` draws this picture.
+//!
+//! # How trimming works
+//!
+//! 1. `ground`: the contour is moved and scaled into a frame in which it has size 1, and cut into *stretches* (`stretch`) along which
+//!    the tangent turns one way by at most 45 degrees and the curvature grows or falls all the way. All certainty below comes from
+//!    that. They go into a spatial index (`field`). A contour that crosses itself is found here.
+//! 2. `strand`: the untrimmed offset in *strands*, the stretches of it that run forwards: 1 + kappa d > 0. Where it runs backwards,
+//!    kappa < -1/d, nothing can ever be kept; cutting there takes the trivial root away from every equation that follows. Convex
+//!    nodes are filled by arcs about the node, concave ones leave two ends that pass each other (equation (3)).
+//! 3. `bury`: a strand whose middle is nearer to C than |d|, by more than the way to its ends, is left out.
+//! 4. `crossing`: all crossings of the strands that are left. Two strands are graphs over a common axis, and their slopes at the ends of
+//!    a part bound them in between, so crossings are counted with certainty and made exact by Newton's method; the touching of two
+//!    strands whose gap is 1e-13 of the contour's size is told from their crossing. What is flatter than that is joined by `close`.
+//! 5. `trace`: at a crossing one strand passes into the reach of the other. So a fragment is kept if it begins where its strand comes
+//!    out, ends where it passes in, and is not covered by anything else, which its distance from C tells (`foot`). At each crossing
+//!    exactly one kept fragment ends and one begins: they join to loops by themselves. If they do not, or if a clear strand is part
+//!    of no loop, something fell within rounding, and d is changed by some 1e-11 of itself, the frame is turned, and it all is done
+//!    again.
+//! 6. `assemble`: trim points are made exact at d; lengths and areas in closed form, turning angles, nesting (`nesting`).
+//!
+//! With a tree at every step the cost grows as n log n with the number of segments, and with the number of crossings (measured by
+//! `cargo bench -p host-sim --bench offset`).
+//!
+//! What is lost and what would fit is told by discs that touch C from the tool's side (`reach`) and by the distance of C from the
+//! finished path (`undercut`). [`crate::measure::clearance`] measures a result again without any of this code.
 
 mod assemble;
 mod bury;
 mod close;
 mod crossing;
+mod error;
 mod field;
 mod foot;
 mod ground;
@@ -15,8 +50,6 @@ mod stretch;
 mod trace;
 mod undercut;
 
-use std::fmt;
-
 use serde::Serialize;
 use shared::complex::Complex;
 
@@ -25,7 +58,7 @@ use reach::Reach;
 use trace::trace;
 
 pub use crate::contour::{Along, Contour};
-use crate::units::Units;
+pub use error::OffsetError;
 
 /// The trimmed offset: all points of the untrimmed one that are nowhere nearer to C than |d|.
 #[derive(Clone, Debug, PartialEq)]
@@ -81,84 +114,6 @@ pub struct Undercut {
     /// The point of C where that is.
     pub deepest: Complex<f64>,
 }
-
-/// Why there is no trimmed offset.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum OffsetError {
-    /// The distance is zero or not a number.
-    Distance,
-    /// The contour crosses itself.
-    Crossing {
-        /// The segments that cross.
-        segments: [usize; 2],
-        /// Where, in mm.
-        at: Complex<f64>,
-    },
-    /// A segment stands still and turns back inside itself: its parametric speed vanishes.
-    Cusp {
-        /// Its number.
-        segment: usize,
-    },
-    /// At a node the contour goes back the way it came.
-    Reversal {
-        /// The node at the end of the segment of this number.
-        node: usize,
-    },
-    /// Nothing of the offset is left.
-    Empty {
-        /// The largest |d| on this side that would leave a path, in mm.
-        largest: f64,
-    },
-    /// Pieces were found that do not join to loops, at every one of a few distances within 1e-9 of the given one.
-    Degenerate,
-}
-
-impl OffsetError {
-    /// What was found and what would do, in one sentence, for an offset at `distance` mm; its lengths are in `units`.
-    pub fn sentence(&self, distance: f64, units: Units) -> String {
-        self.describe(&format!(" at distance {}", units.length(distance)), units)
-    }
-
-    /// The sentence with `at_distance` behind what is so at this distance alone.
-    fn describe(&self, at_distance: &str, units: Units) -> String {
-        let point = |at| units.point(at);
-        match *self {
-            Self::Distance => "the offset distance is zero or not a number; give the radius of a tool".to_string(),
-            Self::Crossing { segments: [one, other], at } if one == other => {
-                format!("the contour crosses itself: segment {one} does at {}; {UNCROSSED}", point(at))
-            }
-            Self::Crossing { segments: [one, other], at } => {
-                format!("the contour crosses itself: segments {one} and {other} meet at {}; {UNCROSSED}", point(at))
-            }
-            Self::Cusp { segment } => format!(
-                "segment {segment} stands still inside and turns back there, so it has no normal; make two segments of it"
-            ),
-            Self::Reversal { node } => format!(
-                "at node {node}, where segment {node} ends, the contour goes back the way it came; no tool fits in between, \
-                 so leave the way back out or keep it apart"
-            ),
-            Self::Empty { largest } if largest > 0.0 => {
-                format!("no path is left{at_distance}: the largest tool that fits has radius {}", units.length(largest))
-            }
-            Self::Empty { .. } => format!("no path is left{at_distance}: no tool fits on this side of the contour"),
-            Self::Degenerate => format!(
-                "the offset{at_distance} is degenerate: its pieces do not join to loops, nor do those within 1e-9 of it; a \
-                 slightly different distance will do"
-            ),
-        }
-    }
-}
-
-const UNCROSSED: &str = "only a contour that does not cross itself has a tool side and a part side";
-
-/// As [`OffsetError::sentence`] in mm, but without the distance, which an error does not know.
-impl fmt::Display for OffsetError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.describe("", Units::Mm))
-    }
-}
-
-impl std::error::Error for OffsetError {}
 
 /// How often another |d| and another turn of the frame are tried where pieces do not join, or where some are missing.
 const ATTEMPTS: u32 = 32;
