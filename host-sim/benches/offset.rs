@@ -68,19 +68,33 @@ fn flattened(contour: &Contour, tolerance: f64) -> Polyline<f64> {
                 flat.add_vertex(PlineVertex::new(arc.start.re, arc.start.im, (0.25 * arc.sweep).tan()));
             }
             Segment::Ph(curve) => {
-                // A chord over the part h of the parameter is off by no more than |r''| h^2/8, and r'' = 2 w w'.
-                let [w0, w1, w2] = curve.w;
-                let largest = w0.norm().max(w1.norm()).max(w2.norm());
-                let bend = 2.0 * largest * 2.0 * (w1 - w0).norm().max((w2 - w1).norm());
-                let chords = (bend / (8.0 * tolerance)).sqrt().ceil().max(1.0);
-                for k in 0..chords as u32 {
-                    let point = curve.point(f64::from(k) / chords);
+                let mut add = |point: Complex<f64>| {
                     flat.add_vertex(PlineVertex::new(point.re, point.im, 0.0));
-                }
+                };
+                chords(curve.control_points(), tolerance, &mut add);
             }
         }
     }
     flat
+}
+
+/// Gives the starts of the fewest chords that halving finds: a curve is no farther from its chord than its control points are.
+fn chords(points: [Complex<f64>; 6], tolerance: f64, add: &mut impl FnMut(Complex<f64>)) {
+    let [start, .., end] = points;
+    let along = (end - start) * (1.0 / (end - start).norm());
+    if points.iter().all(|p| along.cross(*p - start).abs() <= tolerance) {
+        add(start);
+        return;
+    }
+    let (mut left, mut right) = (points, points);
+    for (k, corner) in left.iter_mut().enumerate().skip(1) {
+        for j in 0..points.len() - k {
+            right[j] = (right[j] + right[j + 1]) * 0.5;
+        }
+        *corner = right[0];
+    }
+    chords(left, tolerance, add);
+    chords(right, tolerance, add);
 }
 
 /// The largest | distance from C - |d| | over points of a path.
