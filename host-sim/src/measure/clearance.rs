@@ -57,7 +57,11 @@ pub fn clearance_with(contour: &Contour, offset: &Offset, samples: usize, mut pr
     let nearest = Nearest::new(contour);
     let alongs: Vec<Along> = offset.loops.iter().flat_map(|l| &l.pieces).map(|piece| piece.along).collect();
     let retained: Vec<_> = alongs.iter().filter_map(|along| contour.carrier(*along, offset.distance)).collect();
-    let removed = removed(contour, offset.distance, &alongs, nearest.size());
+    // Contacts on both sides of a bend by the angle t limit a radius to roundoffs over t^2/2. Nearer to a node than this there may be
+    // a contact behind it that is too close, and so there may across the mouth of a neck that is as narrow.
+    let blurred = (2.0 * 8.0 * f64::EPSILON * (nearest.size() / offset.distance.abs() + 2.0) / JUDGED).sqrt();
+    let blurred = 2.0 * blurred * offset.distance.abs();
+    let removed = removed(contour, offset.distance, &alongs, nearest.size(), blurred);
     let path = PathDistance::new(retained.iter().copied());
 
     let steps = (retained.len() + removed.len() + contour.segments.len()).max(1) as f64;
@@ -81,11 +85,8 @@ pub fn clearance_with(contour: &Contour, offset: &Offset, samples: usize, mut pr
         }
         tell();
     }
-    // Contacts on both sides of a bend by the angle t limit a radius to roundoffs over t^2/2. Nearer to a node than this many
-    // radii there may be a contact behind it that is too close.
-    let blurred = (2.0 * 8.0 * f64::EPSILON * (nearest.size() / offset.distance.abs() + 2.0) / JUDGED).sqrt();
     for part in &removed {
-        for xi in inside(part.interval, samples).filter(|xi| part.is_clear(*xi, blurred * offset.distance.abs())) {
+        for xi in inside(part.interval, samples).filter(|xi| part.is_clear(*xi, blurred)) {
             let contact = part.contact(xi, offset.distance);
             let radius = touching_radius(&nearest, contact, 2.0 * offset.distance.abs());
             if radius > largest_removed.0 {
@@ -124,7 +125,7 @@ struct Removed {
     /// The node, on a fill arc.
     node: Option<Complex<f64>>,
     interval: [f64; 2],
-    /// Whether a node that is not convex stands at the start and at the end of the segment.
+    /// Whether a node that is not convex, or where a neck is too narrow to tell, stands at the start and at the end of the segment.
     concave: [bool; 2],
 }
 
@@ -154,7 +155,7 @@ impl Removed {
 }
 
 /// All of the untrimmed offset without the parts `retained`.
-fn removed(contour: &Contour, distance: f64, retained: &[Along], size: f64) -> Vec<Removed> {
+fn removed(contour: &Contour, distance: f64, retained: &[Along], size: f64, blurred: f64) -> Vec<Removed> {
     let mut on_segment = vec![Vec::new(); contour.segments.len()];
     let mut on_fill = vec![Vec::new(); contour.segments.len()];
     for along in retained {
@@ -169,7 +170,9 @@ fn removed(contour: &Contour, distance: f64, retained: &[Along], size: f64) -> V
     let mut parts = Vec::new();
     // Only convex nodes have a gap to fill.
     let convex = |turn: f64| turn * distance > NO_GAP * size.max(distance.abs());
-    let concave = |node: usize| contour.turning_angle(node).is_some_and(|turn| !convex(turn));
+    let pinched = pinched(contour, blurred);
+    let concave =
+        |node: usize| pinched.get(node) == Some(&true) || contour.turning_angle(node).is_some_and(|turn| !convex(turn));
     for (number, (segment, intervals)) in contour.segments.iter().zip(on_segment).enumerate() {
         // An open contour has no node behind its last segment, so that its first segment has none before it.
         let before = number.checked_sub(1).unwrap_or(contour.segments.len() - 1);
@@ -179,12 +182,19 @@ fn removed(contour: &Contour, distance: f64, retained: &[Along], size: f64) -> V
     for (node, intervals) in on_fill.into_iter().enumerate().take(contour.nodes()) {
         let (Some(turn), Some(arc)) = (contour.turning_angle(node), contour.fill_arc(node, distance)) else { continue };
         let Some([before, _]) = contour.at_node(node) else { continue };
-        if convex(turn) {
+        if convex(turn) && pinched.get(node) != Some(&true) {
             let (curve, node, concave) = (Segment::Arc(arc), Some(before.point(1.0)), [false; 2]);
             parts.extend(gaps(intervals).map(|interval| Removed { curve, node, interval, concave }));
         }
     }
     parts
+}
+
+/// For each node, whether another one is nearer than `width`.
+fn pinched(contour: &Contour, width: f64) -> Vec<bool> {
+    let nodes: Vec<Complex<f64>> = contour.segments.iter().map(|segment| segment.point(1.0)).collect();
+    let near = |k: usize| nodes.iter().enumerate().any(|(j, &node)| j != k && (node - nodes[k]).norm() < width);
+    (0..nodes.len()).map(near).collect()
 }
 
 /// What `intervals` leave of 0..=1, without the neighbourhoods of their ends.

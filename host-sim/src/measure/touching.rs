@@ -58,7 +58,8 @@ pub(super) fn touching_radius(nearest: &Nearest<'_>, contact: Contact, most: f64
     // below rounding is not seen. Where no second contact was met it may be close, but then curvature limits the radius to
     // a part t^2 above: the worst t is where both meet.
     let part = rounding / radius;
-    let far = angle > CLOSE && limit > radius * 1.001;
-    let open = if far || limit >= most { 2.0 * part / CLOSE.powi(2) } else { 4.0 * part.sqrt() };
+    let second = limit > radius * 1.001;
+    let seen = if second { angle.min(CLOSE) } else { CLOSE };
+    let open = if second || limit >= most { 2.0 * part / seen.powi(2) } else { 4.0 * part.sqrt() };
     radius * (1.0 - open)
 }

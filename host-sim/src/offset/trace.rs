@@ -20,6 +20,8 @@ pub const ROUNDING: f64 = 1e-14;
 /// What is kept, not yet polished.
 #[derive(Debug)]
 pub struct Traced {
+    /// The distance that it was traced at, in the frame.
+    pub distance: f64,
     /// The untrimmed offset.
     pub untrimmed: Untrimmed,
     /// Their crossings.
@@ -93,7 +95,7 @@ pub fn trace(ground: &Ground, distance: f64) -> Result<Traced, Undecided> {
         tracer.candidates().into_iter().filter(|fragment| tracer.is_clear(fragment)).collect();
     let lost = tracer.lost(&fragments);
     let loops = chain(fragments, &joints, &untrimmed)?;
-    Ok(Traced { untrimmed, joints, loops, lost })
+    Ok(Traced { distance, untrimmed, joints, loops, lost })
 }
 
 /// All crossings of strands that are not buried.
