@@ -1,7 +1,7 @@
 //! Trims the contours of a range of seeds, checks every property of the results, and lists failures by kind.
 //!
 //! `cargo run --release -p tests --example offset_seeds -- FROM COUNT [SAMPLES]` runs seeds FROM to FROM + COUNT - 1 on all
-//! cores. `... -- show SEED` prints one case in full, with what came of it.
+//! cores. `... -- show SEED [DISTANCE]` prints one case in full, with what came of it, at another distance if one is given.
 
 use std::collections::BTreeMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -25,9 +25,9 @@ fn main() {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let number = |k: usize| arguments.get(k).and_then(|text| text.parse::<u64>().ok());
     match (arguments.first().map(String::as_str), number(0), number(1)) {
-        (Some("show"), _, Some(seed)) => show(seed),
+        (Some("show"), _, Some(seed)) => show(seed, arguments.get(2).and_then(|text| text.parse().ok())),
         (_, Some(from), Some(count)) => run(from, count, number(2).map_or(SAMPLES, |n| n as usize)),
-        _ => eprintln!("offset_seeds FROM COUNT [SAMPLES], or offset_seeds show SEED"),
+        _ => eprintln!("offset_seeds FROM COUNT [SAMPLES], or offset_seeds show SEED [DISTANCE]"),
     }
 }
 
@@ -51,8 +51,9 @@ fn attempt(case: &Case, samples: usize, trimmed: impl Fn()) -> (Result<Outcome, 
     (result, time)
 }
 
-fn show(seed: u64) {
-    let case = case(seed);
+fn show(seed: u64, distance: Option<f64>) {
+    let mut case = case(seed);
+    case.distance = distance.unwrap_or(case.distance);
     println!("seed {seed}: {}", describe(&case));
     println!("closed {}, distance {:?}, touches {}", case.contour.closed, case.distance, case.touches);
     for (k, segment) in case.contour.segments.iter().enumerate() {
@@ -153,13 +154,17 @@ fn run(from: u64, count: u64, samples: usize) {
         }
     });
     let Ok(tally) = tally.into_inner() else { return };
+    let mut all = Vec::new();
     for (property, mut seeds) in tally.failures {
         seeds.sort();
+        all.extend(seeds.iter().map(|(seed, _)| *seed));
         println!("{property}: {} seeds", seeds.len());
         for (seed, what) in seeds.iter().take(LISTED) {
             println!("  {seed}: {what}");
         }
     }
+    all.sort_unstable();
+    println!("failed: {all:?}");
     println!("{:?}", tally.outcomes);
     for (family, [failed, all]) in tally.families {
         println!("  {family}: {failed} of {all} failed");

@@ -326,11 +326,11 @@ fn check_topology(contour: &Contour, offset: &Offset) -> Result<(), Failure> {
             return failure("topology", format!("loop {number} has depth {}", ring.depth));
         }
         let expected = if is_void { -sense } else { sense };
-        // A loop that encloses no more than its own gaps may add has no sense.
+        // A loop that encloses no more than its own gaps may add has no sense, nor has one whose sides keep apart from their
+        // walls by |d| within the bar, but lie the wrong way round by less than that.
         let scale = size(contour).max(offset.distance.abs());
-        // Trim points of walls that run along each other are known to a rounding over the angle between them.
-        let thin =
-            ring.area.abs() < (ROUNDING * (scale + ring.length) + gaps(ring)) * scale + 1e-12 * scale * ring.length;
+        let open = (ROUNDING * (scale + ring.length) + gaps(ring)) * scale;
+        let thin = ring.area.abs() < open + BAR * offset.distance.abs() * ring.length;
         if ring.area * expected < 0.0 && !thin {
             return failure("topology", format!("loop {number} of depth {} has area {}", ring.depth, ring.area));
         }

@@ -20,7 +20,7 @@ const NEAR_ENDS: [f64; 3] = [1e-6, 1e-4, 1e-2];
 const AT_TRIM: f64 = 1e-9;
 /// How finely two contacts of one tool must be told apart for its radius to be judged, in parts of the radius.
 const JUDGED: f64 = 1e-9;
-/// Fill arcs shorter than this part of the size are no more than a gap that rounding leaves.
+/// What is shorter than this part of the size is no more than a gap that rounding leaves.
 const NO_GAP: f64 = 1e-9;
 
 /// How far an offset keeps away from its contour, and what it leaves; lengths in mm.
@@ -57,11 +57,7 @@ pub fn clearance_with(contour: &Contour, offset: &Offset, samples: usize, mut pr
     let nearest = Nearest::new(contour);
     let alongs: Vec<Along> = offset.loops.iter().flat_map(|l| &l.pieces).map(|piece| piece.along).collect();
     let retained: Vec<_> = alongs.iter().filter_map(|along| contour.carrier(*along, offset.distance)).collect();
-    // Contacts on both sides of a bend by the angle t limit a radius to roundoffs over t^2/2. Nearer to a node than this there may be
-    // a contact behind it that is too close, and so there may across the mouth of a neck that is as narrow.
-    let blurred = (2.0 * 8.0 * f64::EPSILON * (nearest.size() / offset.distance.abs() + 2.0) / JUDGED).sqrt();
-    let blurred = 2.0 * blurred * offset.distance.abs();
-    let removed = removed(contour, offset.distance, &alongs, nearest.size(), blurred);
+    let removed = removed(contour, offset.distance, &alongs, nearest.size());
     let path = PathDistance::new(retained.iter().copied());
 
     let steps = (retained.len() + removed.len() + contour.segments.len()).max(1) as f64;
@@ -85,9 +81,15 @@ pub fn clearance_with(contour: &Contour, offset: &Offset, samples: usize, mut pr
         }
         tell();
     }
+    // A second contact at the chord t from the first, in radii, limits a radius to roundoffs over t^2/2. Where a part of C
+    // comes so close to a contact that this is too little, nothing can be said.
+    let blurred = (2.0 * 8.0 * f64::EPSILON * (nearest.size() / offset.distance.abs() + 2.0) / JUDGED).sqrt();
     for part in &removed {
-        for xi in inside(part.interval, samples).filter(|xi| part.is_clear(*xi, blurred)) {
+        for xi in inside(part.interval, samples) {
             let contact = part.contact(xi, offset.distance);
+            if nearest.any_within(contact.point, blurred * offset.distance.abs(), part.own) {
+                continue;
+            }
             let radius = touching_radius(&nearest, contact, 2.0 * offset.distance.abs());
             if radius > largest_removed.0 {
                 largest_removed = (radius, contact.point + contact.normal * offset.distance.abs());
@@ -119,22 +121,26 @@ pub fn clearance_with(contour: &Contour, offset: &Offset, samples: usize, mut pr
 }
 
 /// A stretch of the untrimmed offset that is not retained.
+#[derive(Clone, Copy)]
 struct Removed {
     /// The segment, or the fill arc about a node.
     curve: Segment<f64>,
     /// The node, on a fill arc.
     node: Option<Complex<f64>>,
     interval: [f64; 2],
-    /// Whether a node that is not convex, or where a neck is too narrow to tell, stands at the start and at the end of the segment.
-    concave: [bool; 2],
+    /// The segment, or those that meet at the node.
+    own: [usize; 2],
 }
 
 impl Removed {
-    /// Whether a parameter is farther than `length` from nodes that are not convex.
-    fn is_clear(&self, xi: f64, length: f64) -> bool {
-        let [start, end] = self.concave;
-        let before = self.curve.length_to(xi);
-        (!start || before > length) && (!end || self.curve.length() - before > length)
+    /// About how long it is.
+    fn length(&self, distance: f64) -> f64 {
+        /// Chords that are long enough together.
+        const CHORDS: u32 = 16;
+        let [from, to] = self.interval;
+        let offset = if self.node.is_some() { 0.0 } else { distance };
+        let point = |k: u32| self.curve.offset_point(from + (to - from) * f64::from(k) / f64::from(CHORDS), offset);
+        (0..CHORDS).map(|k| (point(k + 1) - point(k)).norm()).sum()
     }
 
     /// Where a tool at the signed `distance` would touch for this parameter.
@@ -155,7 +161,7 @@ impl Removed {
 }
 
 /// All of the untrimmed offset without the parts `retained`.
-fn removed(contour: &Contour, distance: f64, retained: &[Along], size: f64, blurred: f64) -> Vec<Removed> {
+fn removed(contour: &Contour, distance: f64, retained: &[Along], size: f64) -> Vec<Removed> {
     let mut on_segment = vec![Vec::new(); contour.segments.len()];
     let mut on_fill = vec![Vec::new(); contour.segments.len()];
     for along in retained {
@@ -168,33 +174,22 @@ fn removed(contour: &Contour, distance: f64, retained: &[Along], size: f64, blur
         }
     }
     let mut parts = Vec::new();
-    // Only convex nodes have a gap to fill.
-    let convex = |turn: f64| turn * distance > NO_GAP * size.max(distance.abs());
-    let pinched = pinched(contour, blurred);
-    let concave =
-        |node: usize| pinched.get(node) == Some(&true) || contour.turning_angle(node).is_some_and(|turn| !convex(turn));
     for (number, (segment, intervals)) in contour.segments.iter().zip(on_segment).enumerate() {
-        // An open contour has no node behind its last segment, so that its first segment has none before it.
-        let before = number.checked_sub(1).unwrap_or(contour.segments.len() - 1);
-        let concave = [before, number].map(concave);
-        parts.extend(gaps(intervals).map(|interval| Removed { curve: *segment, node: None, interval, concave }));
+        let whole = Removed { curve: *segment, node: None, interval: [0.0, 1.0], own: [number; 2] };
+        parts.extend(gaps(intervals).map(|interval| Removed { interval, ..whole }));
     }
     for (node, intervals) in on_fill.into_iter().enumerate().take(contour.nodes()) {
         let (Some(turn), Some(arc)) = (contour.turning_angle(node), contour.fill_arc(node, distance)) else { continue };
         let Some([before, _]) = contour.at_node(node) else { continue };
-        if convex(turn) && pinched.get(node) != Some(&true) {
-            let (curve, node, concave) = (Segment::Arc(arc), Some(before.point(1.0)), [false; 2]);
-            parts.extend(gaps(intervals).map(|interval| Removed { curve, node, interval, concave }));
+        // Only convex nodes have a gap to fill.
+        if turn * distance > 0.0 {
+            let own = [node, (node + 1) % contour.segments.len()];
+            let whole = Removed { curve: Segment::Arc(arc), node: Some(before.point(1.0)), interval: [0.0, 1.0], own };
+            parts.extend(gaps(intervals).map(|interval| Removed { interval, ..whole }));
         }
     }
+    parts.retain(|part| part.length(distance) > NO_GAP * size.max(distance.abs()));
     parts
-}
-
-/// For each node, whether another one is nearer than `width`.
-fn pinched(contour: &Contour, width: f64) -> Vec<bool> {
-    let nodes: Vec<Complex<f64>> = contour.segments.iter().map(|segment| segment.point(1.0)).collect();
-    let near = |k: usize| nodes.iter().enumerate().any(|(j, &node)| j != k && (node - nodes[k]).norm() < width);
-    (0..nodes.len()).map(near).collect()
 }
 
 /// What `intervals` leave of 0..=1, without the neighbourhoods of their ends.

@@ -114,30 +114,52 @@ impl<'a> Nearest<'a> {
                 best = Foot { distance, segment, xi: 0.0, point };
             }
         }
-        for (segment, (curve, bounds)) in self.contour.segments.iter().zip(&self.bounds).enumerate() {
-            if bounds.distance_sqr(p) < best.distance * best.distance {
-                let mut offer = |xi: f64| {
-                    let point = curve.point(xi);
-                    let distance = (point - p).norm();
-                    if distance < best.distance {
-                        best = Foot { distance, segment, xi, point };
-                    }
-                    best.distance
-                };
-                match curve {
-                    Segment::Line(line) => {
-                        offer(on_line(line, p));
-                    }
-                    Segment::Arc(arc) => {
-                        for xi in on_arc(arc, p) {
-                            offer(xi);
-                        }
-                    }
-                    Segment::Ph(curve) => on_ph(curve, p, &mut offer),
-                }
-            }
+        for segment in 0..self.contour.segments.len() {
+            self.improve(&mut best, segment, p);
         }
         best
+    }
+
+    /// Whether a segment other than those `left_out` comes nearer to `p` than `distance`.
+    pub(super) fn any_within(&self, p: Complex<f64>, distance: f64, left_out: [usize; 2]) -> bool {
+        let others = (0..self.contour.segments.len()).filter(|segment| !left_out.contains(segment));
+        let mut best = Foot { distance, segment: 0, xi: 0.0, point: p };
+        others.into_iter().any(|segment| {
+            self.improve(&mut best, segment, p);
+            best.distance < distance
+        })
+    }
+
+    /// Puts the nearest point of a segment in the place of `best`, if it is nearer to `p`.
+    fn improve(&self, best: &mut Foot, segment: usize, p: Complex<f64>) {
+        let (Some(curve), Some(bounds)) = (self.contour.segments.get(segment), self.bounds.get(segment)) else {
+            return;
+        };
+        if bounds.distance_sqr(p) >= best.distance * best.distance {
+            return;
+        }
+        let mut offer = |xi: f64| {
+            let point = curve.point(xi);
+            let distance = (point - p).norm();
+            if distance < best.distance {
+                *best = Foot { distance, segment, xi, point };
+            }
+            best.distance
+        };
+        match curve {
+            Segment::Line(line) => {
+                offer(on_line(line, p));
+            }
+            Segment::Arc(arc) => {
+                for xi in on_arc(arc, p) {
+                    offer(xi);
+                }
+            }
+            Segment::Ph(curve) => {
+                offer(0.0);
+                on_ph(curve, p, &mut offer);
+            }
+        }
     }
 }
 
