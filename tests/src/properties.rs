@@ -353,11 +353,11 @@ fn check_empty(contour: &Contour, distance: f64, largest: f64, samples: usize) -
     if largest.is_nan() || largest > d * (1.0 + BAR) || reach > largest * (1.0 + BAR) {
         return failure("largest", format!("{largest} at |d| = {d}, but a tool of {reach} touches"));
     }
-    // A loop that is left a millionth below the largest tool is a millionth large: behind a neck narrower than 1e-9 of the size its
+    // A loop that is left a hundred-thousandth below the largest tool is as small: behind a neck narrower than 1e-9 of the size its
     // ends are known to some 1e-8 of |d| only, so its clearance is judged a thousandth below.
     let smaller = |part: f64| largest * distance.signum() * (1.0 - part);
-    if let Err(error) = trim(contour, smaller(1e-6)) {
-        return failure("largest", format!("{largest} at |d| = {d}, but at a millionth less: {error:?}"));
+    if let Err(error) = trim(contour, smaller(1e-5)) {
+        return failure("largest", format!("{largest} at |d| = {d}, but at a hundred-thousandth less: {error:?}"));
     }
     match trim(contour, smaller(1e-3)) {
         Ok(offset) => check_clearance(contour, &offset, samples)

@@ -144,7 +144,7 @@ pub fn trim(contour: &Contour, distance: f64) -> Result<Offset, OffsetError> {
         if number > 0 {
             ground = Ground::new(contour, distance, angle)?;
         }
-        let Ok(traced) = trace(&ground, exact * (1.0 + nudge)) else { continue };
+        let Ok(traced) = trace(&ground, exact * (1.0 + nudge), number % 4 == 3) else { continue };
         if best.as_ref().is_none_or(|&(lost, _)| traced.lost < lost) {
             best = Some((traced.lost, assemble::loops(contour, &ground, &traced, distance)));
         }

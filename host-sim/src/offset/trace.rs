@@ -86,10 +86,16 @@ struct Event {
 }
 
 /// The trimmed offset at `distance`, in the frame of `ground`. Errors: what is found does not join to loops.
-pub fn trace(ground: &Ground, distance: f64) -> Result<Traced, Undecided> {
+///
+/// With `mouths`, necks are taken to be as narrow as rounding where they may be ([`super::close::mouths`]).
+pub fn trace(ground: &Ground, distance: f64, mouths: bool) -> Result<Traced, Undecided> {
     let (untrimmed, covers) = bury(ground, Untrimmed::new(ground, distance), distance);
     let limit = distance.abs();
-    let (joints, events) = meet(&untrimmed, &covers, close(ground, &untrimmed, &covers, limit));
+    let mut given = close(ground, &untrimmed, &covers, limit);
+    if mouths {
+        given.extend(super::close::mouths(ground, &untrimmed, &covers, limit));
+    }
+    let (joints, events) = meet(&untrimmed, &covers, given);
     let tracer = Tracer { ground, untrimmed: &untrimmed, covers: &covers, joints: &joints, events: &events, limit };
     let fragments: Vec<Fragment> =
         tracer.candidates().into_iter().filter(|fragment| tracer.is_clear(fragment)).collect();
