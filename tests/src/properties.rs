@@ -342,7 +342,7 @@ fn check_topology(contour: &Contour, offset: &Offset) -> Result<(), Failure> {
 }
 
 /// Nothing may be left only if no point of C can be touched; and then a tool of the size that is told as the largest must leave
-/// nothing either, but one that is a millionth smaller something.
+/// nothing either, but one that is a hundred-thousandth smaller something.
 fn check_empty(contour: &Contour, distance: f64, largest: f64, samples: usize) -> Result<(), Failure> {
     let none = |distance: f64| Offset { distance, loops: Vec::new() };
     let d = distance.abs();
