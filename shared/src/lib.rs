@@ -21,6 +21,7 @@ pub mod complex;
 pub mod curve;
 pub mod error;
 pub mod executor;
+pub mod extent;
 pub mod feed;
 pub mod fixed;
 pub mod hash;

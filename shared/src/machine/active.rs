@@ -6,7 +6,8 @@ use super::check::MachineError;
 use super::settings::{AxisDrive, AxisName, HostLost, MachineSettings, StepDrive};
 use super::{End, HomeSwitch, Input};
 use crate::TICK;
-use crate::fixed::Fixed;
+use crate::extent::SoftLimits;
+use crate::fixed::{Fixed, REACH_MM};
 use crate::homing::HomingPlan;
 use crate::safety::{Levels, SafetyConfig, Wiring};
 use crate::servo::Servo;
@@ -122,6 +123,16 @@ impl MachineSettings {
 }
 
 impl Machine {
+    /// What jobs may use of the plane. An axis that there is not has no limits but the range of coordinates.
+    pub fn soft_limits(&self) -> SoftLimits {
+        let travel = |name| {
+            let axis = self.axes.iter().find(|axis| axis.name == name);
+            axis.map_or([-REACH_MM, REACH_MM].map(Fixed::from_mm), |axis| axis.travel)
+        };
+        let ([x0, x1], [y0, y1]) = (travel(AxisName::X), travel(AxisName::Y));
+        SoftLimits { low: [x0, y0], high: [x1, y1] }
+    }
+
     /// Takes over the inputs and outputs of one axis.
     fn connect(&mut self, one: &super::AxisSettings, bit: u8) {
         let Wiring { connected, active_low } = &mut self.wiring;
