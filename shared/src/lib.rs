@@ -2,7 +2,7 @@
 //!
 //! A setpoint's way through this crate: a [`curve::Segment`] is cut into a [`piece::Piece`], which travels over the [`link`]; the
 //! [`loader`] checks it and makes the [`active::ActivePiece`] that the [`executor`] walks, moved by the [`interpolator`] under
-//! the [`feed`] law; a [`servo`] turns setpoint and encoder into a command.
+//! the [`feed`] law at the [`pace`] that was asked for; a [`servo`] turns setpoint and encoder into a command.
 //!
 //! This crate knows no clock, no log, no heap and no board; time and inputs are arguments. All of it is generic over
 //! [`real::Real`]: `f32` on the target and in the simulator, bit for bit the same, and `f64` as the oracle of the same code.
@@ -27,6 +27,7 @@ pub mod interpolator;
 pub mod jet;
 pub mod link;
 pub mod loader;
+pub mod pace;
 pub mod piece;
 pub mod polynomial;
 pub mod real;
