@@ -27,6 +27,7 @@ pub mod interpolator;
 pub mod jet;
 pub mod link;
 pub mod loader;
+pub mod motion;
 pub mod pace;
 pub mod piece;
 pub mod polynomial;
