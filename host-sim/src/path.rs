@@ -8,6 +8,7 @@ use shared::error::PathError;
 use shared::feed::Ramp;
 use shared::fixed::{Fixed, Position, round_point};
 use shared::loader::Loader;
+use shared::pace::PaceLimits;
 use shared::piece::{Header, Order, Piece, Shape};
 
 use crate::input::InputError;
@@ -100,6 +101,7 @@ impl PathPiece {
             feed: real(exact.feed),
             start: exact.start.map(ramp),
             end: exact.end.map(ramp),
+            further: None,
             last,
         }
     }
@@ -115,6 +117,7 @@ impl PathPiece {
             feed: self.feed,
             start: self.start,
             end: self.end,
+            further: None,
             last,
         }
     }
@@ -160,6 +163,8 @@ impl Path {
             closed: job.closed,
             // The controller sees points that are rounded to f32: a tenth of a micrometre on top.
             tolerance: (job.tolerance + 1e-4) as f32,
+            rest: false,
+            pace: PaceLimits::USUAL,
         };
         let path = Self { pieces, header, weight: job.feed.weight };
         path.check().map_err(|(piece, error)| job.piece_error(piece, error))?;

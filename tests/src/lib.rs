@@ -7,6 +7,7 @@
 pub mod draft;
 pub mod oracle;
 pub mod run;
+pub mod stock;
 
 pub use draft::Draft;
 pub use run::{Run, Scalar};
