@@ -1,7 +1,13 @@
 //! Independent measurements of a motion: nothing here asks the kernel.
 
+mod clearance;
 mod foot_point;
 mod integral;
+mod nearest;
+mod path_distance;
+mod touching;
 
+pub use clearance::{Clearance, clearance, clearance_with};
 pub use foot_point::ContourError;
 pub use integral::exact_time;
+pub use nearest::{Foot, Nearest};

@@ -1,9 +1,27 @@
 //! The exact trimmed offset of any contour: the path of a tool's centre that touches the part and never cuts into it.
 
+mod assemble;
+mod bury;
+mod crossing;
+mod field;
+mod foot;
+mod ground;
+mod nesting;
+mod reach;
+mod roots;
+mod strand;
+mod stretch;
+mod trace;
+mod undercut;
+
 use std::fmt;
 
 use serde::Serialize;
 use shared::complex::Complex;
+
+use ground::Ground;
+use reach::Reach;
+use trace::trace;
 
 pub use crate::contour::{Along, Contour};
 
@@ -101,21 +119,44 @@ impl fmt::Display for OffsetError {
 
 impl std::error::Error for OffsetError {}
 
+/// By how much |d| is changed, relatively, to find which pieces there are; one after the other until they join.
+///
+/// A tool that just fits a slot, a node that falls on a trim point, three walls at one distance: exactly at d such a thing can be
+/// decided neither way, a little beside it it can. The first one is a little smaller, so that a tool that just fits does fit.
+/// Trim points are made exact at d afterwards, and no clearance falls short of |d| by more than this.
+const NUDGES: [f64; 8] = [-1e-11, -3.1e-11, 1.7e-11, -7.3e-11, 5.3e-11, -1.9e-10, 2.3e-10, -6.1e-10];
+
 /// The trimmed offset of `contour` at the signed `distance` in mm.
 pub fn trim(contour: &Contour, distance: f64) -> Result<Offset, OffsetError> {
-    let _ = (contour, distance);
+    if !(distance != 0.0 && distance.is_finite()) {
+        return Err(OffsetError::Distance);
+    }
+    let ground = Ground::new(contour, distance)?;
+    ground.check_simple()?;
+    let exact = ground.to_frame(distance);
+    for nudge in NUDGES {
+        let Ok(traced) = trace(&ground, exact * (1.0 + nudge)) else { continue };
+        let loops = assemble::loops(contour, &ground, &traced, distance);
+        if loops.is_empty() {
+            return Err(OffsetError::Empty { largest: largest_fitting(contour, distance) });
+        }
+        return Ok(Offset { distance, loops });
+    }
     Err(OffsetError::Degenerate)
 }
 
 /// Where the tool of `offset` leaves material on `contour`, in order along C.
 pub fn undercuts(contour: &Contour, offset: &Offset) -> Vec<Undercut> {
-    let _ = (contour, offset);
-    Vec::new()
+    Ground::new(contour, offset.distance).map_or_else(|_| Vec::new(), |ground| undercut::undercuts(&ground, offset))
 }
 
 /// The radius of the largest tool that reaches every point of `contour` from the side of `side`'s sign (positive: right of
-/// travel), in mm; 0 where a sharp concave corner keeps every tool out, infinite where none is too large.
+/// travel), in mm; 0 where a sharp concave corner keeps every tool out, infinite where none is too large. Good to 1e-7 of itself.
 pub fn largest_reaching(contour: &Contour, side: f64) -> f64 {
-    let _ = (contour, side);
-    0.0
+    Ground::new(contour, 0.0).map_or(0.0, |ground| ground.to_mm(Reach::new(&ground, side).everywhere()))
+}
+
+/// The radius of the largest tool that touches any point of `contour` from that side, in mm; infinite where none is too large.
+pub fn largest_fitting(contour: &Contour, side: f64) -> f64 {
+    Ground::new(contour, 0.0).map_or(0.0, |ground| ground.to_mm(Reach::new(&ground, side).anywhere()))
 }

@@ -1,0 +1,256 @@
+//! The nearest point of a contour, to rounding.
+//!
+//! A line and an arc have it in closed form. On a PH quintic the squared distance from p is a polynomial of degree 10; its
+//! Bernstein coefficients bound it from below on any interval, so intervals that cannot hold the minimum are dropped and the
+//! others halved until the polynomial is convex there. Newton's method on Re((p - r) conj(r')) = 0 then finds the foot point,
+//! and the distance is measured to the point itself: it is good to a few roundoffs of the contour's size, as an error of the
+//! foot point counts in second order only. No sample density has to be trusted.
+
+use std::f64::consts::TAU;
+
+use shared::complex::Complex;
+use shared::curve::{Arc, Curve as _, Line, PhQuintic, Segment};
+
+use crate::contour::Contour;
+
+/// What sums of squares may be wrong by, relative to the largest term.
+const SLACK: f64 = 64.0 * f64::EPSILON;
+/// Parameter intervals below this width are not halved any more: less than a roundoff of distance is left to gain.
+const NARROW: f64 = 1e-9;
+/// Halvings of a bracket, and Newton steps, before it is as narrow as numbers are.
+const STEPS: u32 = 80;
+
+/// A nearest point of a contour.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Foot {
+    /// How far it is, in mm.
+    pub distance: f64,
+    /// The segment that holds it.
+    pub segment: usize,
+    /// Its parameter there.
+    pub xi: f64,
+    /// The point, in mm.
+    pub point: Complex<f64>,
+}
+
+/// Lower left and upper right corner.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Bounds([Complex<f64>; 2]);
+
+impl Bounds {
+    /// The box around `points`.
+    pub(super) fn around(points: impl IntoIterator<Item = Complex<f64>>) -> Self {
+        let far = f64::INFINITY;
+        Self(points.into_iter().fold([Complex::new(far, far), Complex::new(-far, -far)], |[low, high], p| {
+            [Complex::new(low.re.min(p.re), low.im.min(p.im)), Complex::new(high.re.max(p.re), high.im.max(p.im))]
+        }))
+    }
+
+    /// A box around the whole of `segment` at the distance `offset`.
+    pub(super) fn of(segment: &Segment<f64>, offset: f64) -> Self {
+        let bare = match segment {
+            Segment::Line(line) => Self::around([line.start, line.end]),
+            Segment::Ph(curve) => Self::around(curve.control_points()),
+            Segment::Arc(arc) => {
+                // Between two of these points an arc leaves their chord by less than half of its part's length.
+                let points = (0..=16).map(|k| arc.point(f64::from(k) / 16.0));
+                Self::around(points).grown(arc.length() / 32.0)
+            }
+        };
+        bare.grown(offset.abs())
+    }
+
+    /// Larger by so much on every side.
+    pub(super) fn grown(self, by: f64) -> Self {
+        let Self([low, high]) = self;
+        let by = Complex::new(by, by);
+        Self([low - by, high + by])
+    }
+
+    /// The square of the distance from `p`; 0 inside.
+    pub(super) fn distance_sqr(&self, p: Complex<f64>) -> f64 {
+        let Self([low, high]) = self;
+        let x = (low.re - p.re).max(p.re - high.re).max(0.0);
+        let y = (low.im - p.im).max(p.im - high.im).max(0.0);
+        x * x + y * y
+    }
+
+    /// The length of the diagonal.
+    pub(super) fn size(&self) -> f64 {
+        let Self([low, high]) = self;
+        (*high - *low).norm()
+    }
+}
+
+/// Answers which point of a contour is nearest to a given one.
+#[derive(Debug)]
+pub struct Nearest<'a> {
+    contour: &'a Contour,
+    bounds: Vec<Bounds>,
+    size: f64,
+}
+
+impl<'a> Nearest<'a> {
+    /// For `contour`.
+    pub fn new(contour: &'a Contour) -> Self {
+        let bounds: Vec<_> = contour.segments.iter().map(|segment| Bounds::of(segment, 0.0)).collect();
+        let size = Bounds::around(bounds.iter().flat_map(|b| b.0)).size();
+        Self { contour, bounds, size }
+    }
+
+    /// The diagonal of a box around the contour, in mm; not the tightest box.
+    pub fn size(&self) -> f64 {
+        self.size
+    }
+
+    /// The point nearest to `p`; of a contour without segments, one infinitely far away.
+    pub fn at(&self, p: Complex<f64>) -> Foot {
+        let mut best = Foot { distance: f64::INFINITY, segment: 0, xi: 0.0, point: p };
+        // A node first: most segments are farther from p than that and are not looked at.
+        for (segment, curve) in self.contour.segments.iter().enumerate() {
+            let point = start(curve);
+            let distance = (point - p).norm();
+            if distance < best.distance {
+                best = Foot { distance, segment, xi: 0.0, point };
+            }
+        }
+        for (segment, (curve, bounds)) in self.contour.segments.iter().zip(&self.bounds).enumerate() {
+            if bounds.distance_sqr(p) < best.distance * best.distance {
+                let mut offer = |xi: f64| {
+                    let point = curve.point(xi);
+                    let distance = (point - p).norm();
+                    if distance < best.distance {
+                        best = Foot { distance, segment, xi, point };
+                    }
+                    best.distance
+                };
+                match curve {
+                    Segment::Line(line) => {
+                        offer(on_line(line, p));
+                    }
+                    Segment::Arc(arc) => {
+                        for xi in on_arc(arc, p) {
+                            offer(xi);
+                        }
+                    }
+                    Segment::Ph(curve) => on_ph(curve, p, &mut offer),
+                }
+            }
+        }
+        best
+    }
+}
+
+/// The point at 0, as it is stored.
+fn start(segment: &Segment<f64>) -> Complex<f64> {
+    match segment {
+        Segment::Line(line) => line.start,
+        Segment::Arc(arc) => arc.start,
+        Segment::Ph(curve) => curve.start,
+    }
+}
+
+/// The parameter on a line nearest to `p`.
+pub(super) fn on_line(line: &Line<f64>, p: Complex<f64>) -> f64 {
+    let chord = line.end - line.start;
+    (chord.dot(p - line.start) / chord.norm_sqr()).clamp(0.0, 1.0)
+}
+
+/// Parameters on an arc, of which one is nearest to `p`: where p lies towards or opposite, and both ends.
+pub(super) fn on_arc(arc: &Arc<f64>, p: Complex<f64>) -> [f64; 6] {
+    // The angle of p seen from the centre, written without the centre, which may be far away.
+    let apart = p - arc.start;
+    let angle = arc.radius.cross(apart).atan2(arc.radius.norm_sqr() + arc.radius.dot(apart));
+    let within = |angle: f64| (angle / arc.sweep).clamp(0.0, 1.0);
+    let opposite = if angle > 0.0 { angle - TAU / 2.0 } else { angle + TAU / 2.0 };
+    let second = |angle: f64| if arc.sweep > 0.0 { (angle + TAU) % TAU } else { (angle - TAU) % TAU };
+    [0.0, 1.0, within(angle), within(second(angle)), within(second(opposite)), within(opposite)]
+}
+
+/// Offers foot points of `p` on a PH quintic, the nearest one among them. `offer` takes a parameter and gives the smallest
+/// distance so far.
+fn on_ph(curve: &PhQuintic<f64>, p: Complex<f64>, offer: &mut impl FnMut(f64) -> f64) {
+    let mut best = offer(1.0);
+    let coefficients = squared_distance(&curve.control_points().map(|q| q - p));
+    let slack = SLACK * coefficients.iter().copied().fold(0.0, f64::max);
+    let mut stack = vec![(coefficients, 0.0, 1.0)];
+    while let Some((d, from, to)) = stack.pop() {
+        let (low, high) = d.iter().fold((f64::INFINITY, 0.0_f64), |(l, h), &x| (l.min(x), h.max(x)));
+        if low - slack >= best * best {
+            continue;
+        }
+        let convex = d.windows(3).all(|w| w[0] + w[2] >= 2.0 * w[1]);
+        if convex || high - low <= slack || to - from < NARROW {
+            best = best.min(offer(foot(curve, p, from, to)));
+            continue;
+        }
+        let middle = 0.5 * (from + to);
+        let (left, right) = halves(d);
+        best = best.min(offer(middle));
+        stack.push((left, from, middle));
+        stack.push((right, middle, to));
+    }
+}
+
+/// Bernstein coefficients of |r - p|^2 from the control points of r - p.
+pub(super) fn squared_distance(points: &[Complex<f64>; 6]) -> [f64; 11] {
+    const FIVE: [f64; 6] = [1.0, 5.0, 10.0, 10.0, 5.0, 1.0];
+    const TEN: [f64; 11] = [1.0, 10.0, 45.0, 120.0, 210.0, 252.0, 210.0, 120.0, 45.0, 10.0, 1.0];
+    let mut product = [0.0; 11];
+    for (i, a) in points.iter().enumerate() {
+        for (j, b) in points.iter().enumerate() {
+            product[i + j] += FIVE[i] * FIVE[j] * a.dot(*b);
+        }
+    }
+    for (value, binomial) in product.iter_mut().zip(TEN) {
+        *value /= binomial;
+    }
+    product
+}
+
+/// Bernstein coefficients on both halves.
+pub(super) fn halves<const N: usize>(mut d: [f64; N]) -> ([f64; N], [f64; N]) {
+    let mut left = d;
+    for k in 1..N {
+        for j in 0..N - k {
+            d[j] = 0.5 * (d[j] + d[j + 1]);
+        }
+        left[k] = d[0];
+    }
+    (left, d)
+}
+
+/// The foot point of `p` within `from..to`, where the squared distance has one minimum: Newton's method, kept in a bracket.
+pub(super) fn foot(curve: &PhQuintic<f64>, p: Complex<f64>, from: f64, to: f64) -> f64 {
+    let slope = |xi: f64| {
+        let w = curve.preimage(xi);
+        let (tangent, bend) = (w.square(), (w * curve.preimage_derivative(xi)) * 2.0);
+        let apart = curve.point(xi) - p;
+        (apart.dot(tangent), tangent.norm_sqr() + apart.dot(bend))
+    };
+    if slope(from).0 >= 0.0 {
+        return from;
+    }
+    if slope(to).0 <= 0.0 {
+        return to;
+    }
+    let [mut low, mut high] = [from, to];
+    let mut xi = 0.5 * (from + to);
+    for _ in 0..STEPS {
+        let (value, rise) = slope(xi);
+        if value < 0.0 {
+            low = xi;
+        } else {
+            high = xi;
+        }
+        let newton = xi - value / rise;
+        let next = if newton > low && newton < high { newton } else { 0.5 * (low + high) };
+        let step = (next - xi).abs();
+        xi = next;
+        // Newton's error is about the square of its last step.
+        if step < 1e-9 {
+            break;
+        }
+    }
+    xi
+}

@@ -1,0 +1,139 @@
+//! The contour in a frame of its own: its middle at the origin, its size 1, so that rounding and tolerances are relative to it.
+
+use shared::complex::Complex;
+use shared::curve::{Arc, Curve as _, Line, PhQuintic, Segment};
+
+use super::crossing::{Crossing, crossings};
+use super::field::Field;
+use super::stretch::{Stretch, cuts};
+use super::{Contour, OffsetError};
+
+/// A node that turns by more than this, in radians, goes back the way it came.
+const REVERSAL: f64 = std::f64::consts::PI - 1e-9;
+
+/// Two stretches that both end within this distance of a point touch there, but do not cross.
+const TOUCH: f64 = 1e-9;
+
+/// A contour that offsets can be taken of, and what is near to what on it.
+#[derive(Debug)]
+pub struct Ground {
+    /// The contour in the frame.
+    pub contour: Contour,
+    /// For each segment, where it is cut into stretches.
+    pub cuts: Vec<Vec<f64>>,
+    /// All stretches in order along C.
+    pub field: Field,
+    /// For each stretch, the segment that it is a part of.
+    pub segment_of: Vec<usize>,
+    middle: Complex<f64>,
+    scale: f64,
+}
+
+impl Ground {
+    /// Checks a contour for offsets up to |`distance`|, in mm. Errors: a cusp, a node that turns back.
+    pub fn new(contour: &Contour, distance: f64) -> Result<Self, OffsetError> {
+        let [low, high] = contour.extent();
+        let middle = (low + high) * 0.5;
+        let scale = 1.0 / (high - low).norm().max(distance.abs());
+        let segments: Vec<Segment<f64>> = contour.segments.iter().map(|s| framed(s, middle, scale)).collect();
+        for (segment, curve) in contour.segments.iter().enumerate() {
+            if let Segment::Ph(curve) = curve
+                && has_cusp(curve)
+            {
+                return Err(OffsetError::Cusp { segment });
+            }
+        }
+        let contour = Contour { segments, closed: contour.closed };
+        for node in 0..contour.nodes() {
+            if contour.turning_angle(node).is_some_and(|angle| angle.abs() > REVERSAL) {
+                return Err(OffsetError::Reversal { node });
+            }
+        }
+        let cuts: Vec<Vec<f64>> = contour.segments.iter().map(cuts).collect();
+        let mut stretches = Vec::new();
+        let mut segment_of = Vec::new();
+        for (number, (segment, cuts)) in contour.segments.iter().zip(&cuts).enumerate() {
+            for pair in cuts.windows(2) {
+                if let [from, to] = *pair {
+                    stretches.push(Stretch::new(segment, from, to, 0.0));
+                    segment_of.push(number);
+                }
+            }
+        }
+        Ok(Self { contour, cuts, field: Field::new(stretches), segment_of, middle, scale })
+    }
+
+    /// A length in mm in this frame's unit.
+    pub fn to_frame(&self, length: f64) -> f64 {
+        length * self.scale
+    }
+
+    /// A length of this frame in mm.
+    pub fn to_mm(&self, length: f64) -> f64 {
+        length / self.scale
+    }
+
+    /// A point of this frame in mm.
+    pub fn place(&self, point: Complex<f64>) -> Complex<f64> {
+        point * (1.0 / self.scale) + self.middle
+    }
+
+    /// How far the contour is from meeting at a node.
+    pub fn gap(&self, node: usize) -> f64 {
+        self.contour.at_node(node).map_or(0.0, |[before, after]| (before.point(1.0) - after.point(0.0)).norm())
+    }
+
+    /// Errors: two stretches cross.
+    pub fn check_simple(&self) -> Result<(), OffsetError> {
+        let stretches = self.field.stretches();
+        let mut found: Vec<Crossing> = Vec::new();
+        let mut first: Option<((usize, f64), OffsetError)> = None;
+        self.field.pairs(|a, b| {
+            let (Some(one), Some(other)) = (stretches.get(a), stretches.get(b)) else { return };
+            let [Some(&i), Some(&j)] = [a, b].map(|k| self.segment_of.get(k)) else { return };
+            // Neighbours on one segment turn by less than a half turn together and cannot meet again.
+            if i == j && a + 1 == b {
+                return;
+            }
+            found.clear();
+            crossings(one, other, &mut found);
+            // Segments meet at their nodes, as well as the file says so.
+            let touch = TOUCH + 4.0 * self.gap(i).max(self.gap(j));
+            for crossing in &found {
+                let at = one.at(crossing.tau[0]).point;
+                let ends = |s: &Stretch| (s.start() - at).norm().min((s.end() - at).norm()) < touch;
+                let place = (a, crossing.tau[0]);
+                if !(ends(one) && ends(other)) && first.as_ref().is_none_or(|&(before, _)| place < before) {
+                    first = Some((place, OffsetError::Crossing { segments: [i, j], at: self.place(at) }));
+                }
+            }
+        });
+        first.map_or(Ok(()), |(_, error)| Err(error))
+    }
+}
+
+/// The segment with `middle` at the origin and `scale` times its size; parameters stay.
+fn framed(segment: &Segment<f64>, middle: Complex<f64>, scale: f64) -> Segment<f64> {
+    match *segment {
+        Segment::Ph(PhQuintic { start, w }) => {
+            let root = scale.sqrt();
+            Segment::Ph(PhQuintic { start: (start - middle) * scale, w: w.map(|w| w * root) })
+        }
+        Segment::Line(Line { start, end }) => {
+            Segment::Line(Line { start: (start - middle) * scale, end: (end - middle) * scale })
+        }
+        Segment::Arc(Arc { start, radius, sweep }) => {
+            Segment::Arc(Arc { start: (start - middle) * scale, radius: radius * scale, sweep })
+        }
+    }
+}
+
+/// Whether the parametric speed comes to rest, to rounding: w is a quadratic, so |w| is least at one of a few places.
+fn has_cusp(curve: &PhQuintic<f64>) -> bool {
+    const SLOWEST: f64 = 1e-7;
+    let fastest = curve.w.iter().map(|w| w.norm_sqr()).fold(0.0, f64::max);
+    let sigma = curve.speed_coefficients();
+    let slope = [0, 1, 2, 3].map(|k| sigma[k + 1] - sigma[k]);
+    let places = super::roots::zeros(slope).into_iter().chain([0.0, 1.0]);
+    places.map(|xi| curve.speed(xi)).any(|speed| !(speed > SLOWEST * SLOWEST * fastest))
+}
