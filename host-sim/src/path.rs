@@ -13,6 +13,7 @@ use shared::piece::{Header, Order, Piece, Shape};
 
 use crate::input::InputError;
 use crate::job::{Along, Job};
+use crate::pacing;
 
 /// One piece of the exact path.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -163,10 +164,11 @@ impl Path {
             closed: job.closed,
             // The controller sees points that are rounded to f32: a tenth of a micrometre on top.
             tolerance: (job.tolerance + 1e-4) as f32,
-            rest: false,
+            rest: job.rest,
             pace: PaceLimits::USUAL,
         };
-        let path = Self { pieces, header, weight: job.feed.weight };
+        let mut path = Self { pieces, header, weight: job.feed.weight };
+        path.header.pace = pacing::usual(&path);
         path.check().map_err(|(piece, error)| job.piece_error(piece, error))?;
         Ok(path)
     }

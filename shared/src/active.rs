@@ -41,6 +41,7 @@ pub struct ActivePiece<T, const F: usize = 1> {
     end_slowness: T,
     duration: T,
     until: PathTime,
+    goes_on: bool,
     further: Option<Linear<T, F>>,
     last: Option<Position>,
 }
@@ -107,6 +108,7 @@ impl<T: Real, const F: usize> ActivePiece<T, F> {
             end_slowness: T::ZERO,
             duration: T::ZERO,
             until: PathTime::START,
+            goes_on: false,
             further,
             last: piece.last,
         };
@@ -125,9 +127,9 @@ impl<T: Real, const F: usize> ActivePiece<T, F> {
         Self { until: before.after(self.duration), ..self }
     }
 
-    /// The same as the end of a path that goes on at its feed, as far as the pace may know. Load time.
+    /// The same as the end of a path that ends at its feed, for which the pace need not come to 0. Load time.
     pub fn and_on(self) -> Self {
-        Self { until: self.until.and_on(), ..self }
+        Self { goes_on: true, ..self }
     }
 
     /// d(tau)/dt of equation (21), in 1/s: above zero. One division.
@@ -216,6 +218,12 @@ impl<T: Real, const F: usize> ActivePiece<T, F> {
     #[inline(always)]
     pub fn until(&self) -> PathTime {
         self.until
+    }
+
+    /// How far the path reaches with this piece as its last one that has come: to its end, or on from there where the path ends at
+    /// its feed.
+    pub fn reach(&self) -> PathTime {
+        if self.goes_on { self.until.and_on() } else { self.until }
     }
 
     /// Where the further axes are at parameter `tau`; none where the piece leaves them where they are.

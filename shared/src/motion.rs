@@ -93,6 +93,21 @@ impl State {
         })
     }
 
+    /// Its name, as in the table.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Idle => "idle",
+            Self::Run => "run",
+            Self::Starved => "starved",
+            Self::Finished => "finished",
+            Self::Braking => "braking",
+            Self::Holding => "holding",
+            Self::Held => "held",
+            Self::Cancelling => "cancelling",
+            Self::Cancelled => "cancelled",
+        }
+    }
+
     /// Whether a tick may move the setpoint.
     #[inline(always)]
     pub const fn is_moving(self) -> bool {
@@ -192,10 +207,6 @@ mod tests {
         Event::End,
     ];
 
-    fn name(state: State) -> String {
-        std::format!("{state:?}").to_lowercase()
-    }
-
     /// The table of this module's text is what the code does, cell by cell.
     #[test]
     fn the_table_is_this_one() {
@@ -208,9 +219,9 @@ mod tests {
         assert_eq!(head.len(), EVENTS.len() + 1);
         assert_eq!(rows.len(), STATES.len());
         for (row, state) in rows.iter().zip(STATES) {
-            assert_eq!(row[0], name(state));
+            assert_eq!(row[0], state.name());
             for ((cell, event), column) in row[1..].iter().zip(EVENTS).zip(&head[1..]) {
-                let found = state.after(event).map(name).unwrap_or_default();
+                let found = state.after(event).map_or("", State::name);
                 assert_eq!(cell.trim_start_matches('-'), found, "{state:?}, {event:?} ({column})");
                 let asked = matches!(event, Event::Hold | Event::Resume | Event::Cancel);
                 assert_eq!(cell == "-", asked && found.is_empty(), "a minus is a refused command");

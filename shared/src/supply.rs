@@ -1,7 +1,7 @@
 //! Where the tick gets its pieces from, and how far they reach.
 //!
 //! A tick must know how much path time is queued, so that it can rest within it. Every piece says at which path time it ends
-//! ([`ActivePiece::until`]), a sum that the loader makes; whoever fills a queue leaves the end of the last one beside it, in one
+//! ([`ActivePiece::until`]), a sum that the loader makes; whoever fills a queue leaves how far the last one reaches beside it, in one
 //! word ([`Sink`]), and the tick subtracts the end of the piece that it is on ([`Source`]).
 
 use core::sync::atomic::{AtomicU32, Ordering};
@@ -53,7 +53,7 @@ pub trait Pieces<T, const F: usize = 1> {
     /// a piece is large beside the rest of a tick.
     fn next_piece(&mut self, place: &mut Option<ActivePiece<T, F>>) -> bool;
 
-    /// Where the last piece ends that has come, whether or not it was taken. None where nobody knows: the motion then relies on
+    /// How far the last piece reaches that has come, whether or not it was taken ([`ActivePiece::reach`]). None where nobody knows: the motion then relies on
     /// more to come, and stops dead where none does. A path that ends at rest needs a horizon.
     #[inline(always)]
     fn horizon(&self) -> Option<PathTime> {
@@ -133,9 +133,9 @@ impl<'a, T: Real, const F: usize> Sink<'a, T, F> {
     /// Adds a piece, or gives it back where there is no room. The horizon moves after the piece has come, so that the tick never
     /// counts on one that is not there.
     pub fn push(&mut self, piece: ActivePiece<T, F>) -> Result<(), ActivePiece<T, F>> {
-        let until = piece.until();
+        let reach = piece.reach();
         self.pieces.enqueue(piece)?;
-        self.horizon.store(until.0, Ordering::Release);
+        self.horizon.store(reach.0, Ordering::Release);
         Ok(())
     }
 

@@ -38,7 +38,7 @@ impl<T: Real, const F: usize> Pieces<T, F> for Stock<'_, T, F> {
     }
 
     fn horizon(&self) -> Option<PathTime> {
-        Some(self.pieces[..self.come].last().map_or(PathTime::START, ActivePiece::until))
+        Some(self.pieces[..self.come].last().map_or(PathTime::START, ActivePiece::reach))
     }
 
     fn discard(&mut self) {

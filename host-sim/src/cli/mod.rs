@@ -2,6 +2,7 @@
 
 mod motion;
 mod output;
+mod pacing;
 mod prepare;
 mod reproduce;
 mod simulate;

@@ -17,11 +17,6 @@ const SMOOTH_RAD: f64 = 1e-6;
 pub(super) fn read(source: Source) -> Result<Job, InputError> {
     let raw: RawJob = toml::from_str(&source.text)
         .map_err(|error| source.error(&error.span().unwrap_or(0..0), first_line(error.message())))?;
-    if let Some(rest) = &raw.rest
-        && *rest.get_ref()
-    {
-        return Err(source.error(&rest.span(), "starting from rest is not available yet; leave `rest` out or false"));
-    }
     let mm = raw.units.mm();
     let tolerance = match &raw.tolerance {
         None => TOLERANCE_MM,
@@ -41,7 +36,17 @@ pub(super) fn read(source: Source) -> Result<Job, InputError> {
         pieces: raw.piece.iter().map(|p| p.span()).collect(),
         source,
     };
-    Ok(Job { units: raw.units, closed: *raw.closed.get_ref(), tolerance, offset, feed, segments, pieces, places })
+    Ok(Job {
+        units: raw.units,
+        closed: *raw.closed.get_ref(),
+        tolerance,
+        rest: raw.rest,
+        offset,
+        feed,
+        segments,
+        pieces,
+        places,
+    })
 }
 
 fn first_line(message: &str) -> &str {

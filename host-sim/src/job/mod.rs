@@ -121,6 +121,8 @@ pub struct Job {
     pub closed: bool,
     /// The widest gap that is taken for none.
     pub tolerance: f64,
+    /// Whether the path begins and ends at rest.
+    pub rest: bool,
     /// The signed offset distance d, positive right of travel.
     pub offset: f64,
     /// The feed.
