@@ -2,8 +2,8 @@
 //!
 //! With x(T) an axis along the path at its own feed and q the pace, its acceleration is q^2 x'' + q' x'. Over samples of the whole
 //! path, |q'| may be R(c) = min (A - c^2 |x''|)/|x'| while q is at most c. A higher c leaves less for q', so the largest c is taken
-//! that leaves half of R(1), and at most 2. Of the jerk only q'' x' is the pace's: |q''| <= min J/|x'|. At a corner the velocity
-//! steps, whatever anybody does; its step is the feed law's and is left out.
+//! that leaves half of R(1), or 2/s if that is more, and at most 2. Of the jerk only q'' x' is the pace's: |q''| <= min J/|x'|. At
+//! a corner the velocity steps, whatever anybody does; its step is the feed law's and is left out.
 
 use shared::complex::Complex;
 use shared::curve::Curve as _;
@@ -22,6 +22,9 @@ const ALL_SAMPLES: usize = 200_000;
 /// A part of the limits that is not given away: for what lies between two samples, and for a tick's differences, which are not yet
 /// derivatives.
 const KEPT: f64 = 0.02;
+
+/// A slope of the pace that is not lowered for the sake of higher overrides, in 1/s.
+const BRISK: f64 = 2.0;
 
 /// Where nobody says what the axes bear, the pace adds this much to what the path asks for: mm/s^2 and mm/s^3.
 const USUAL_ACCELERATION: f64 = 1e3;
@@ -80,15 +83,16 @@ pub fn within(path: &Path, limits: &AxisLimits) -> Result<PaceLimits<f32>, Pacin
         let Complex { re, im } = tightest.acceleration;
         return Err(PacingError::Acceleration { piece: tightest.piece, asked: re.abs().max(im.abs()) });
     }
-    let half = |c: f64| slope(c).is_some_and(|(slope, _)| slope >= 0.5 * alone);
+    let enough = (0.5 * alone).max(alone.min(BRISK));
+    let leaves_enough = |c: f64| slope(c).is_some_and(|(slope, _)| slope >= enough);
     let (mut most, mut beyond) = (1.0, 2.0);
-    if half(2.0) {
+    if leaves_enough(2.0) {
         most = 2.0;
     } else {
         // To a hundredth of a per cent.
         for _ in 0..14 {
             let middle = 0.5 * (most + beyond);
-            if half(middle) { most = middle } else { beyond = middle }
+            if leaves_enough(middle) { most = middle } else { beyond = middle }
         }
     }
     let slope = slope(most).map_or(alone, |(slope, _)| slope);

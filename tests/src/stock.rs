@@ -23,6 +23,11 @@ pub struct Stock<'a, T, const F: usize = 1> {
 }
 
 impl<'a, T, const F: usize> Stock<'a, T, F> {
+    /// How many there are in all.
+    pub fn all(&self) -> usize {
+        self.pieces.len()
+    }
+
     /// All of them are there.
     pub fn full(pieces: &'a [ActivePiece<T, F>]) -> Self {
         Self { pieces, come: pieces.len(), taken: 0, dropped: 0 }
