@@ -37,8 +37,8 @@ pub struct ActivePiece<T, const F: usize = 1> {
     substeps: (u32, T),
     /// The rate of (21) at the start, which a tick that crosses a node needs besides that of its end.
     start_rate: T,
-    /// The inverse of the rate at the end, in s.
-    end_slowness: T,
+    /// A bound of the inverse of the rate from below, in s.
+    least_slowness: T,
     duration: T,
     until: PathTime,
     goes_on: bool,
@@ -105,7 +105,7 @@ impl<T: Real, const F: usize> ActivePiece<T, F> {
             knots: [T::ZERO; 2],
             substeps: (1, T::ONE),
             start_rate: T::ZERO,
-            end_slowness: T::ZERO,
+            least_slowness: T::ZERO,
             duration: T::ZERO,
             until: PathTime::START,
             goes_on: false,
@@ -114,9 +114,10 @@ impl<T: Real, const F: usize> ActivePiece<T, F> {
         };
         active.check_points()?;
         active.knots = law.knots().map(|u| active.tau_at(u));
-        active.substeps = active.choose_substeps(tick);
+        let fastest = active.fastest();
+        active.substeps = active.choose_substeps(fastest * tick);
         active.start_rate = active.rate(-T::HALF);
-        active.end_slowness = T::ONE / active.rate(T::HALF);
+        active.least_slowness = T::ONE / fastest;
         active.duration = duration::of(&active);
         active.until = PathTime::START.after(active.duration);
         Ok(active)
@@ -202,10 +203,10 @@ impl<T: Real, const F: usize> ActivePiece<T, F> {
         self.start_rate
     }
 
-    /// The inverse of the rate of (21) at the end of the piece, in s.
+    /// How long a part of the piece takes at least, for a parameter of 1, in s: 1 over the largest rate of (21), as found in 64 parts.
     #[inline(always)]
-    pub fn end_slowness(&self) -> T {
-        self.end_slowness
+    pub fn least_slowness(&self) -> T {
+        self.least_slowness
     }
 
     /// The path time of the piece in s: the integral of (21), as exact as [`duration`] says.
@@ -301,17 +302,20 @@ impl<T: Real, const F: usize> ActivePiece<T, F> {
         (low + high) * T::HALF
     }
 
-    /// As many as keep a substep to a quarter of a ramp and a sixteenth of a piece at its fastest, where the Gauss rule is exact to
-    /// rounding; 8 at most, so that the tick stays bounded.
-    fn choose_substeps(&self, tick: T) -> (u32, T) {
+    /// The largest rate that there would be without ramps, in 1/s.
+    fn fastest(&self) -> T {
         /// Half as many parts as the rate is looked for in: a curve that nearly stands still somewhere has a sharp peak there.
         const HALF_PARTS: i32 = 32;
-        let fastest = match &self.curve {
+        match &self.curve {
             Curve::Ph(ph) => (-HALF_PARTS..=HALF_PARTS)
                 .fold(T::ZERO, |most: T, k| most.most(ph.base(T::from_int(k) * T::lit(0.5 / f64::from(HALF_PARTS))))),
             Curve::Line { base, .. } | Curve::Arc { base, .. } => *base,
-        };
-        let share = fastest * tick;
+        }
+    }
+
+    /// As many as keep a substep to a quarter of a ramp and a sixteenth of a piece at its fastest, where the Gauss rule is exact to
+    /// rounding; 8 at most, so that the tick stays bounded. `share` is the part of the piece that a tick covers at its fastest.
+    fn choose_substeps(&self, share: T) -> (u32, T) {
         let wanted = share * T::lit(16.0).most(T::lit(4.0) / self.law.shortest_ramp());
         let count = (wanted + T::HALF).least(T::lit(8.0)).to_int().clamp(1, 8);
         (count.unsigned_abs(), T::ONE / T::from_int(count))

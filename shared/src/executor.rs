@@ -4,21 +4,21 @@
 //! is left at the end of a piece is carried into the next one, so that the time of a path does not depend on where its nodes fall.
 //! A path ends at its exact last point.
 //!
-//! A rest is reached in time, not in arc length. The time that is left on a piece is its duration less the path time spent on
-//! it; at order 1, whose steps take other times than they are made for, that is the trapezium of (21) over the step. Over the last ticks
-//! before the end the way itself says it, and says it the better the nearer it comes: (1/2 - tau) times the mean of 1/rate here and
-//! at the end. So the pace comes to 0 at the end of the way, not near it: the last setpoint is put there, from less than five half
-//! steps of the pace away.
+//! A rest is reached in time, not in arc length: the time that is left on a piece is integrated in every tick from which on a
+//! stop may have to begin, and the better the nearer its end is ([`duration::of_rest`]). So the pace comes to 0 at the end of the way,
+//! not near it: the last setpoint is put there, from less than five half steps of the pace away. Elsewhere a bound of that time from
+//! below is enough.
 
 use crate::accumulator::Accumulator;
 use crate::active::ActivePiece;
 use crate::complex::Complex;
+use crate::duration;
 use crate::fixed::Position;
 use crate::further::Setpoint;
 use crate::interpolator::advance;
 use crate::loader::Motion;
 use crate::motion::{CommandError, Event, MotionCommand};
-use crate::pace::{Pace, Pacer};
+use crate::pace::{Pace, Pacer, Target};
 use crate::piece::Order;
 use crate::real::Real;
 
@@ -28,8 +28,8 @@ pub use crate::supply::Pieces;
 /// How many pieces a tick may enter. Denser pieces than that slow the motion down instead of lengthening the tick.
 pub const NODES_PER_TICK: u32 = 16;
 
-/// The last stretch of a piece, in ticks of path time, on which the way says how much time is left.
-const LAST_TICKS: f64 = 4.0;
+/// What a supply without a horizon is taken for, in s.
+const ENDLESS: f64 = 1e6;
 
 /// One axis-independent view of a tick, for traces and telemetry.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -52,29 +52,19 @@ pub struct Executor<T, const F: usize = 1> {
     state: State,
     pacer: Pacer<T>,
     pace: Pace,
-    /// The override in per cent, and the level of the pace that it means.
+    /// The override in per cent, and the pace that it means.
     percent: u8,
-    wanted: i32,
+    wanted: Target<T>,
     single_block: bool,
     active: Option<ActivePiece<T, F>>,
     /// Whether the next tick begins with the next piece.
     at_node: bool,
     entered: u32,
     tau: Accumulator<T>,
-    /// The path time that is left on the piece, in s.
-    left: Accumulator<T>,
     rate: T,
     point: Complex<T>,
     setpoint: Setpoint<F>,
     spare: T,
-}
-
-/// The part of a tick that was spent on the piece on which it ended.
-struct Spent<T> {
-    /// The path time in s.
-    time: T,
-    /// The rate where it began.
-    from: T,
 }
 
 /// What the table says of `event`, or nothing.
@@ -118,13 +108,12 @@ impl<T: Real, const F: usize> Executor<T, F> {
             pacer,
             pace: pacer.unity(),
             percent: 100,
-            wanted: 1,
+            wanted: pacer.unity_as_target(),
             single_block: false,
             active: None,
             at_node: true,
             entered: 0,
             tau: Accumulator::new(T::ZERO),
-            left: Accumulator::new(T::ZERO),
             rate: T::ZERO,
             point: Complex::ZERO,
             setpoint,
@@ -149,7 +138,7 @@ impl<T: Real, const F: usize> Executor<T, F> {
         let Motion { order, rest, pacer } = *motion;
         let (percent, single_block) = (self.percent, self.single_block);
         let pace = if rest { Pace::REST } else { pacer.unity() };
-        let wanted = pacer.level(percent);
+        let wanted = pacer.target(percent);
         let fresh = Self::resting(self.tick, self.setpoint);
         *self = Self { order, state: State::Run, pacer, pace, percent, wanted, single_block, ..fresh };
     }
@@ -167,7 +156,7 @@ impl<T: Real, const F: usize> Executor<T, F> {
             }
             MotionCommand::Override { percent } => {
                 self.percent = percent;
-                self.wanted = self.pacer.level(percent);
+                self.wanted = self.pacer.target(percent);
                 return Ok(());
             }
             MotionCommand::SingleBlock(on) => {
@@ -210,46 +199,40 @@ impl<T: Real, const F: usize> Executor<T, F> {
             entered = 1;
         }
         let Some(piece) = &self.active else { return };
-        let way = self.way(piece, pieces);
-        let target = if self.state.is_stopping() { 0 } else { self.wanted };
-        let stride = self.pacer.step(&mut self.pace, target, way);
+        let beyond = self.beyond(piece, pieces);
+        let least_way = self.tau.left_to(T::HALF) * piece.least_slowness() + beyond;
+        let target = if self.state.is_stopping() { Target::REST } else { self.wanted };
+        let way = || duration::of_rest(piece, &self.tau) + beyond;
+        let stride = self.pacer.step(&mut self.pace, &target, least_way, way);
         if stride.short != (self.state == State::Braking) {
             follow(&mut self.state, if stride.short { Event::Short } else { Event::Ample });
         }
         if stride.steps == 0 {
-            self.stand(target, way);
+            self.stand(beyond);
             return;
         }
         let time = self.pacer.time(stride);
-        let spent = match advance(piece, &mut self.tau, self.rate, self.order, time) {
-            None => Some(Spent { time, from: self.rate }),
-            Some(left) => self.cross_nodes(pieces, left, time, entered),
-        };
+        if let Some(left) = advance(piece, &mut self.tau, self.rate, self.order, time) {
+            self.cross_nodes(pieces, left, time, entered);
+        }
         if self.state == State::Finished {
             return;
         }
         self.place_setpoint();
-        self.count(spent);
-        if self.pace.is_rest() && target == 0 {
+        if self.pace.is_rest() && self.state.is_stopping() {
             self.come_to_rest();
         }
     }
 
-    /// The path time in s for which there is way: to the end of the piece where blocks are run one by one, else of all that is
-    /// queued.
+    /// The path time in s for which there is way beyond the piece: none where blocks are run one by one, else what is queued.
     #[inline(always)]
-    fn way(&self, piece: &ActivePiece<T, F>, pieces: &impl Pieces<T, F>) -> T {
-        let mut here = self.left.value();
-        if here < T::lit(LAST_TICKS) * self.tick {
-            let slowness = T::ONE / self.rate + piece.end_slowness();
-            here = self.tau.left_to(T::HALF) * T::HALF * slowness;
-        }
+    fn beyond(&self, piece: &ActivePiece<T, F>, pieces: &impl Pieces<T, F>) -> T {
         if self.single_block {
-            return here;
+            return T::ZERO;
         }
         match pieces.horizon() {
-            Some(horizon) => here + horizon.since(piece.until()),
-            None => here + self.pacer.ample(),
+            Some(horizon) => horizon.since(piece.until()),
+            None => T::lit(ENDLESS),
         }
     }
 
@@ -264,17 +247,6 @@ impl<T: Real, const F: usize> Executor<T, F> {
         if let Some(further) = piece.further(tau) {
             self.setpoint.further = further;
         }
-    }
-
-    /// Counts down the time that is left on the piece.
-    #[inline(always)]
-    fn count(&mut self, spent: Option<Spent<T>>) {
-        let Some(Spent { time, from }) = spent else { return };
-        let time = match self.order {
-            Order::First => time * T::HALF * (T::ONE + from / self.rate),
-            Order::Second | Order::Third | Order::Exact => time,
-        };
-        self.left.add(-time);
     }
 
     fn happen(&mut self, event: Event) {
@@ -303,7 +275,6 @@ impl<T: Real, const F: usize> Executor<T, F> {
         }
         let Some(piece) = &self.active else { return false };
         self.tau = Accumulator::new(-T::HALF);
-        self.left = Accumulator::new(piece.duration());
         self.rate = piece.start_rate();
         self.entered = self.entered.wrapping_add(1);
         self.at_node = false;
@@ -313,40 +284,41 @@ impl<T: Real, const F: usize> Executor<T, F> {
         true
     }
 
-    /// From the end of a piece into the next ones, with the path time `left` of `time`; `entered` pieces were entered before.
-    /// Returns what was spent on the last one, if the tick ends on it.
+    /// From the end of a piece into the next ones, with the path time `left` of `time`; `entered` pieces were entered in this tick
+    /// before.
     #[inline(never)]
-    fn cross_nodes(&mut self, pieces: &mut impl Pieces<T, F>, mut left: T, time: T, entered: u32) -> Option<Spent<T>> {
+    fn cross_nodes(&mut self, pieces: &mut impl Pieces<T, F>, mut left: T, time: T, entered: u32) {
         for _ in entered..NODES_PER_TICK {
             if self.active.as_ref().is_some_and(|piece| piece.last().is_some()) {
                 self.finish(left * (self.tick / time));
-                return None;
+                return;
             }
             self.stop_at_node();
             if self.single_block && self.pacer.may_end(&self.pace) {
                 self.pace = Pace::REST;
                 self.happen(Event::Block);
-                return None;
+                return;
             }
             if !self.enter(pieces) {
                 self.run_dry();
-                return None;
+                return;
             }
-            let Some(piece) = &self.active else { return None };
+            let Some(piece) = &self.active else { return };
             match advance(piece, &mut self.tau, self.rate, self.order, left) {
-                None => return Some(Spent { time: left, from: self.rate }),
+                None => return,
                 Some(rest) => left = rest,
             }
         }
         // More nodes than a tick may cross: the rest of the time is given up, and the next tick begins at this node.
         self.stop_at_node();
-        None
     }
 
-    /// The end of the piece, with nothing left of it.
+    /// The end of the piece, with nothing left of it. Where the next one does not move them, further axes stay as this one ends.
     fn stop_at_node(&mut self) {
+        if let Some(further) = self.active.as_ref().and_then(ActivePiece::further_end) {
+            self.setpoint.further = further;
+        }
         self.tau = Accumulator::new(T::HALF);
-        self.left = Accumulator::new(T::ZERO);
         self.at_node = true;
     }
 
@@ -366,10 +338,6 @@ impl<T: Real, const F: usize> Executor<T, F> {
         if let Some([x, y, _]) = piece.last() {
             self.setpoint.plane = [x, y];
         }
-        // An axis that no piece moves stays where it is to the end.
-        if let Some(further) = piece.further_end() {
-            self.setpoint.further = further;
-        }
         self.spare = spare;
         self.stop_at_node();
         self.rate = T::ZERO;
@@ -378,11 +346,12 @@ impl<T: Real, const F: usize> Executor<T, F> {
 
     /// A tick that does not move: at rest, as it was asked for, or because the way has come to its end.
     #[inline(never)]
-    fn stand(&mut self, target: i32, way: T) {
-        if target == 0 {
+    fn stand(&mut self, beyond: T) {
+        let Some(piece) = &self.active else { return };
+        if self.state.is_stopping() {
             self.come_to_rest();
-        } else if self.pacer.is_nothing(way) {
-            if self.active.as_ref().is_some_and(|piece| piece.last().is_some()) {
+        } else if self.pacer.is_nothing(duration::of_rest(piece, &self.tau) + beyond) {
+            if piece.last().is_some() {
                 self.finish(T::ZERO);
                 return;
             }

@@ -2,7 +2,8 @@
 //! helix.
 //!
 //! With u the covered fraction of the piece's length on C, a further axis is at middle + (u - 1/2) way: relative to the middle for the
-//! same reason as the curve, so that an f32 resolves 12 nm on 200 mm.
+//! same reason as the curve. In f32 that is good to 12 nm on 200 mm; on a PH curve, where u is a quintic, to four roundoffs, 50 nm
+//! (test `four_axes_follow_the_arc_length_of_a_curve`).
 
 use serde::de::{Error, SeqAccess, Visitor};
 use serde::ser::SerializeTuple;

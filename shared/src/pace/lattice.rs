@@ -26,7 +26,7 @@ fn falling_way(level: i32, slope: i32, steepest: i32) -> i32 {
     let top = level + slope * (slope + 1) / 2;
     let behind = 2 * slope * top - squares(slope);
     let root = top.unsigned_abs().isqrt() as i32;
-    let steep = root.min(steepest.max(slope));
+    let steep = root.min(steepest);
     let more = top - steep * steep;
     let flat = more.checked_div(steep).unwrap_or(0);
     let rest = more - flat * steep;

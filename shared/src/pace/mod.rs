@@ -13,9 +13,9 @@
 //!
 //! | part | cost, f32 on a Cortex-M4F |
 //! | --- | --- |
-//! | [`Pacer::step`] at a steady pace, far from any end | 4 comparisons |
+//! | [`Pacer::step`] at a steady pace, far from any end | 3 comparisons |
 //! | while the pace changes | some 25 instructions |
-//! | near an end | at most three times [`lattice`]'s 40, and two integer divisions each |
+//! | near an end | at most twice the 40 of the stopping way, with an integer division each; and [`crate::duration::of_rest`] |
 
 mod lattice;
 
@@ -50,6 +50,11 @@ impl PaceLimits<f32> {
 /// The longest stop, in ticks: 4 s at 1024 Hz.
 const LONGEST_STOP: i32 = 4096;
 
+/// The part of a way that a stop relies on. A way is known within some per cent of itself only, and at order 1 a tick takes by half its
+/// change of the rate another path time than it is made for. What is kept back leaves a stop an eighth of its slope for corrections
+/// and nearly a quarter of its bend, and makes it 8/7 as long at most; nothing is left over, since it shrinks with the way.
+const RELIED_ON: f64 = 7.0 / 8.0;
+
 /// The fewest steps of a pace of 1, so that every per cent of an override is one of its own.
 const FEWEST_STEPS: f64 = 128.0;
 
@@ -77,6 +82,19 @@ impl Pace {
     }
 }
 
+/// A pace that is wanted.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Target<T> {
+    level: i32,
+    /// A way in s of path time from which on a stop from here need not be looked at.
+    ample: T,
+}
+
+impl<T: Real> Target<T> {
+    /// To rest: that needs no way.
+    pub const REST: Self = Self { level: 0, ample: T::ZERO };
+}
+
 /// What one tick does to the pace.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Stride {
@@ -93,12 +111,9 @@ pub struct Pacer<T> {
     whole: i32,
     /// The largest slope.
     steepest: i32,
-    /// The largest slope of a stop that is planned ahead. What is left of `steepest` makes up for a way that is known within
-    /// some per cent only.
-    planned: i32,
     /// The level of the largest pace.
     most: i32,
-    /// A way in s that leaves room for any stop.
+    /// A way in s of path time that leaves room for any stop.
     ample: T,
     /// The way in s below which no motion is worth while: one step up and one down are four half steps, and a way is rounded
     /// down to whole ones.
@@ -116,7 +131,6 @@ impl<T: Real> Pacer<T> {
         Self {
             whole: 1,
             steepest: 0,
-            planned: 0,
             most: 1,
             ample: T::ZERO,
             least: T::ZERO,
@@ -153,17 +167,15 @@ impl<T: Real> Pacer<T> {
         // No ramp between 0 and the largest pace is steeper than its root.
         let root = most.unsigned_abs().isqrt() as i32;
         let steepest = down(per_tick * steps).min(root).max(2);
-        let planned = steepest - (steepest / 8).max(1);
         // The mean of a stop is half its level, in two half steps; three ticks for what does not divide. A slope upwards first comes
-        // down to 0, and the tick at hand ends before anything does.
-        let ticks = most.checked_div(planned).unwrap_or(most) + planned + 3;
-        let ample = (i64::from(ticks) + 2 * i64::from(steepest + 2)) * i64::from(most);
+        // down to 0, and the tick at hand ends before anything does. An eighth of the way is kept back.
+        let ticks = most.checked_div(steepest).unwrap_or(most) + steepest + 3;
+        let ample = (i64::from(ticks) + 2 * i64::from(steepest + 2)) * i64::from(most) * 8 / 7 + 8;
         let (Ok(ample), true) = (i32::try_from(ample), ticks <= LONGEST_STOP) else { return Err(slow) };
         let half_step = tick / T::from_int(2 * whole);
         Ok(Self {
             whole,
             steepest,
-            planned,
             most,
             ample: T::from_int(ample) * half_step,
             least: T::lit(5.0) * half_step,
@@ -183,21 +195,23 @@ impl<T: Real> Pacer<T> {
         Pace { level: self.whole, slope: 0 }
     }
 
-    /// The level of an override in per cent, at most that of the largest pace and at least one step.
-    pub fn level(&self, percent: u8) -> i32 {
+    /// The pace of 1, of a fixed pace.
+    pub const fn unity_as_target(&self) -> Target<T> {
+        Target { level: self.whole, ample: T::ZERO }
+    }
+
+    /// The pace of an override in per cent, at most the largest and at least one step.
+    pub fn target(&self, percent: u8) -> Target<T> {
         // 255 times 2^20 is below 2^28.
-        ((i32::from(percent) * self.whole + 50) / 100).clamp(1, self.most)
+        let level = ((i32::from(percent) * self.whole + 50) / 100).min(self.most).max(1);
+        // The tick at hand ends before the stop begins; a way in s may be a roundoff of itself wrong.
+        let ample = lattice::stopping_way(level, 0, self.steepest) + 4 * level + 8;
+        Target { level, ample: T::from_int(ample) * self.half_step * T::lit(1.001 / RELIED_ON) }
     }
 
     /// q: the pace as a number. Not for the tick: it divides.
     pub fn value(&self, pace: &Pace) -> T {
         T::from_int(pace.level) / T::from_int(self.whole)
-    }
-
-    /// A way in s of path time that leaves room for any stop: where a stop is farther ahead, it need not be looked at.
-    #[inline(always)]
-    pub fn ample(&self) -> T {
-        self.ample
     }
 
     /// Whether a way of `way` s of path time is too short to begin a motion for: less than five half steps.
@@ -217,16 +231,18 @@ impl<T: Real> Pacer<T> {
         if stride.steps == 2 * self.whole { self.tick } else { T::from_int(stride.steps) * self.half_step }
     }
 
-    /// One tick: moves the pace towards `target`, but so that it can always rest within `way` s of path time.
+    /// One tick: moves the pace towards `target`, but so that it can always rest within the way that is left. That is at least
+    /// `least_way` s of path time; where it matters, `way` is asked how much it is.
     ///
     /// |q'|, |q''| and 0 <= q <= most hold whatever the targets and ways were before. A way that turns out shorter than it was
     /// said to be is met as closely as a stop at the limits can.
     #[inline(always)]
-    pub fn step(&self, pace: &mut Pace, target: i32, way: T) -> Stride {
-        if pace.slope == 0 && pace.level == target && way >= self.ample {
+    pub fn step(&self, pace: &mut Pace, target: &Target<T>, least_way: T, way: impl FnOnce() -> T) -> Stride {
+        if pace.slope == 0 && pace.level == target.level && least_way >= target.ample {
             return Stride { steps: 2 * pace.level, short: false };
         }
-        self.change(pace, target, way)
+        let way = if least_way < self.ample { way() } else { least_way };
+        self.change(pace, target.level, way)
     }
 
     #[inline(never)]
@@ -236,7 +252,8 @@ impl<T: Real> Pacer<T> {
         let (mut next, mut short) = (wanted, false);
         if way < self.ample {
             // Rounded down: half a half step less, and to the nearest.
-            next = self.within(level, slope, wanted, (way * self.per_second - T::HALF).to_int());
+            let relied_on = way * self.per_second * T::lit(RELIED_ON) - T::HALF;
+            next = self.within(level, slope, wanted, relied_on.to_int());
             // The last ticks of a stop bend upwards as if towards the target.
             short = next < wanted || (next < 0 && level < target);
         }
@@ -265,7 +282,7 @@ impl<T: Real> Pacer<T> {
         let mut next = wanted;
         for _ in 0..2 {
             let after = level + next;
-            if level + after + lattice::stopping_way(after, next, self.planned) <= way {
+            if level + after + lattice::stopping_way(after, next, self.steepest) <= way {
                 return next;
             }
             let lower = next - 1;

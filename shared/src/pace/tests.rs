@@ -15,11 +15,16 @@ fn pacer(slope: f64, bend: f64, most: f64) -> Pacer<f64> {
     Pacer::activate(&PaceLimits { slope, bend, most }, TICK).unwrap()
 }
 
+/// A step towards a level, with a way of `way` s that is known.
+fn step(pacer: &Pacer<f64>, pace: &mut Pace, level: i32, way: f64) -> Stride {
+    pacer.step(pace, &Target { level, ample: pacer.ample }, way, || way)
+}
+
 /// Runs to `target` from `pace` and returns levels tick by tick, the path time and the ticks that it took.
 fn run(pacer: &Pacer<f64>, pace: &mut Pace, target: i32) -> (f64, u32) {
     let (mut time, mut ticks) = (0.0, 0);
     while (pace.level, pace.slope) != (target, 0) {
-        time += pacer.time(pacer.step(pace, target, FAR));
+        time += pacer.time(step(pacer, pace, target, FAR));
         ticks += 1;
         assert!(ticks < 10_000, "never comes to {target}");
     }
@@ -33,7 +38,7 @@ fn starts_and_stops_have_their_closed_forms() {
     for (slope, bend, q) in [(4.0, 40.0, 1.0), (4.0, 40.0, 2.0), (10.0, 400.0, 0.5), (2.0, 8.0, 1.0), (50.0, 60.0, 1.0)]
     {
         let pacer = pacer(slope, bend, 2.0);
-        let level = pacer.level((q * 100.0) as u8);
+        let level = pacer.target((q * 100.0) as u8).level;
         let exact = if q * bend > slope * slope { q / slope + slope / bend } else { 2.0 * (q / bend).sqrt() };
         // The steps of the pace round both limits: slope by one step a tick, bend by one step in all of them.
         let rounding = exact * (TICK * bend / slope + 1.0 / f64::from(pacer.whole)) + 3.0 * TICK;
@@ -53,13 +58,13 @@ fn a_pace_of_one_is_the_tick() {
     // Steps that do not divide a tick in binary.
     let pacer = pacer(4.0, 37.0, 2.0);
     let mut pace = pacer.unity();
-    let stride = pacer.step(&mut pace, pacer.level(100), FAR);
+    let stride = pacer.step(&mut pace, &pacer.target(100), FAR, || FAR);
     assert_eq!((pacer.time(stride), stride.short, pace), (TICK, false, pacer.unity()));
     assert_eq!(pacer.value(&pace), 1.0);
     let fixed = Pacer::fixed(TICK as f32);
     let mut pace = fixed.unity();
     for percent in [1, 100, 200] {
-        let stride = fixed.step(&mut pace, fixed.level(percent), 0.0);
+        let stride = fixed.step(&mut pace, &fixed.target(percent), 0.0, || 0.0);
         assert_eq!((fixed.time(stride), stride.short, fixed.is_fixed()), (TICK as f32, false, true));
     }
 }
@@ -70,7 +75,7 @@ fn overrides_are_their_per_cents() {
     let coarse = pacer(1e3, 1e6, 1.5);
     for percent in 1..=200 {
         for (pacer, most) in [(&fine, 2.0), (&coarse, 1.5)] {
-            let q = pacer.value(&Pace { level: pacer.level(percent), slope: 0 });
+            let q = pacer.value(&Pace { level: pacer.target(percent).level, slope: 0 });
             let wanted = f64::from(percent).min(most * 100.0) / 100.0;
             assert!((q - wanted).abs() <= 0.5 / FEWEST_STEPS && q > 0.0 && q <= most, "{percent} %: {q}");
         }
@@ -148,7 +153,7 @@ proptest! {
             last = pacer.most * wish.eighths / 8;
             for _ in 0..wish.ticks {
                 let before = pace;
-                let stride = pacer.step(&mut pace, last, FAR);
+                let stride = step(&pacer, &mut pace, last, FAR);
                 check(&pacer, &limits, before, pace)?;
                 prop_assert_eq!(stride, Stride { steps: before.level + pace.level, short: false });
             }
@@ -156,7 +161,7 @@ proptest! {
         let mut ticks = 0;
         while (pace.level, pace.slope) != (last, 0) {
             let before = pace;
-            pacer.step(&mut pace, last, FAR);
+            step(&pacer, &mut pace, last, FAR);
             check(&pacer, &limits, before, pace)?;
             ticks += 1;
             // To turn round and go all the way.
@@ -184,7 +189,7 @@ proptest! {
             }
             let target = (pacer.most * wishes.next().unwrap_or(8) / 8).max(1);
             let before = pace;
-            let stride = pacer.step(&mut pace, target, way as f64 / pacer.per_second);
+            let stride = step(&pacer, &mut pace, target, way as f64 / pacer.per_second);
             check(&pacer, &limits, before, pace)?;
             way -= i64::from(stride.steps);
             ticks += 1;
@@ -204,7 +209,7 @@ fn a_way_that_vanishes_is_met_at_the_limit() {
     let mut pace = pacer.unity();
     let mut ticks = 0;
     while !pace.is_rest() {
-        let stride = pacer.step(&mut pace, pacer.level(100), 0.0);
+        let stride = step(&pacer, &mut pace, pacer.target(100).level, 0.0);
         assert!(stride.short);
         ticks += 1;
     }
