@@ -4,6 +4,7 @@
 //!
 //! | module | what |
 //! | --- | --- |
+//! | [`units`] | millimetres and inches, at the border |
 //! | [`input`] | files as they are read, and errors that name file, line and column |
 //! | [`contour`] | the part's curve: segments and nodes |
 //! | [`offset`] | the exact trimmed offset of a contour |
@@ -14,6 +15,7 @@
 //! | [`plant`] | motors, screws, friction, encoders: what hangs on the axes |
 //! | [`simulate`] | the tick of `shared` over a path, with or without a plant |
 //! | [`measure`] | contour error and exact time, independent of the kernel |
+//! | [`trimming`] | what an offset comes to, in the units of its file |
 //! | [`reproduce`] | published experiments beside their published figures |
 //! | [`report`] | pictures and tables of results in one HTML file |
 
@@ -29,3 +31,5 @@ pub mod prepare;
 pub mod report;
 pub mod reproduce;
 pub mod simulate;
+pub mod trimming;
+pub mod units;

@@ -2,8 +2,12 @@
 
 #![allow(clippy::unwrap_used, reason = "a failed test says where")]
 
-use std::path::PathBuf;
-use std::process::{Command, Output};
+mod common;
+
+use std::path::Path;
+use std::process::Output;
+
+use common::{file, run, says};
 
 const GOOD: &str = r#"units = "mm"
 closed = true
@@ -32,29 +36,12 @@ segment = 2
 segment = 3
 "#;
 
-fn file(name: &str, text: &str) -> PathBuf {
-    let path = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(name);
-    std::fs::write(&path, text).unwrap();
-    path
+fn simulate(job: &Path, options: &[&str]) -> Output {
+    run("simulate", job, options)
 }
 
-fn simulate(job: &std::path::Path, options: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_hodograph")).arg("simulate").arg(job).args(options).output().unwrap()
-}
-
-/// One sentence on standard error, status 2, and no output.
 fn refused(name: &str, text: &str, options: &[&str]) -> String {
-    let path = file(&format!("{name}.toml"), text);
-    let setpoints = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(format!("{name}.csv"));
-    let _ = std::fs::remove_file(&setpoints);
-    let mut all = options.to_vec();
-    all.extend(["--setpoints", setpoints.to_str().unwrap()]);
-    let output = simulate(&path, &all);
-    let errors = String::from_utf8(output.stderr).unwrap();
-    assert_eq!(output.status.code(), Some(2), "{name}: {errors}");
-    assert!(output.stdout.is_empty() && !setpoints.exists(), "{name}: something moved");
-    assert_eq!(errors.trim_end().lines().count(), 1, "{name}: {errors}");
-    errors.replace(path.to_str().unwrap(), "job.toml")
+    common::refused("simulate", "--setpoints", name, text, options)
 }
 
 #[test]
@@ -103,19 +90,21 @@ fn each_fault_has_its_place_and_its_sentence() {
         ("not-toml", "units = \"mm\"", "units = mm\"", &["job.toml:1:"]),
         ("rest", "closed = true", "closed = true\nrest = 1", &["job.toml:3:8:", "expected a boolean"]),
         ("arc-centre", "centre = [40.0, 10.0]", "centre = [40.0, 11.0]", &["segment 1", "centre"]),
+        ("reduction-word", "reduction = 0.5", "reduction = \"fast\"", &["job.toml:8:13:", "\"fast\"", "`auto`"]),
+        ("reduction-list", "reduction = 0.5", "reduction = [0.5]", &["job.toml:8:13:", "\"auto\""]),
         (
-            "no-trim",
-            "\n[[piece]]\nsegment = 0\n[[piece]]\nsegment = 1\n[[piece]]\nsegment = 2\n[[piece]]\nsegment = 3",
+            "no-feed",
+            "[feed]\nrate = 600.0\nweight = 0.5\nreduction = 0.5\nramp = 0.25\n",
             "",
-            &["[[piece]]"],
+            &["job.toml:", "no [feed]"],
         ),
+        ("fill-range", "segment = 3\n", "fill = { node = 3, from = 0.5, to = 1.5 }\n", &["piece 3", "0.5 to 1.5"]),
+        ("no-choice", "distance = 2.0", "distance = 2.0\nloop = 0", &["job.toml:5:8:", "no loop to choose"]),
     ];
     for (name, from, to, words) in cases {
         assert!(GOOD.contains(from), "{name}");
         let error = refused(name, &GOOD.replacen(from, to, 1), &[]);
-        for word in *words {
-            assert!(error.contains(word), "{name}: {error:?} lacks {word:?}");
-        }
+        says(name, &error, words);
     }
 }
 
@@ -128,9 +117,7 @@ fn an_open_contour_is_not_closed() {
         1,
     );
     let error = refused("not-closed", &text, &[]);
-    for word in ["job.toml:2:10:", "ends 3 mm away", "closed = false"] {
-        assert!(error.contains(word), "{error:?} lacks {word:?}");
-    }
+    says("not-closed", &error, &["job.toml:2:10:", "ends 3 mm away", "closed = false"]);
 }
 
 #[test]
@@ -141,6 +128,7 @@ fn faulty_options_name_themselves() {
         ("--ramp", "-1", "-1"),
         ("--feed", "0", "above zero"),
         ("--feed", "nan", "NaN"),
+        ("--loop", "0", "no loop to choose"),
         ("--plant", "no-such-plant.toml", "cannot be read"),
     ] {
         let error = refused("options", GOOD, &[option, value]);

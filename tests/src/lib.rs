@@ -4,12 +4,14 @@
 //! that a test fills; [`oracle`] integrates equation (21) from the paper's formulas alone, with no line in common with the kernel.
 //!
 //! For offsets: [`chain`] builds contours by hand and [`contours`] at random, [`simple`] decides whether one crosses itself,
-//! [`properties`] holds a trimmed offset against what must be true of it; [`winding`] and [`largest_disc`] serve these.
+//! [`properties`] holds a trimmed offset against what must be true of it, [`expected`] against closed forms; [`winding`] and
+//! [`largest_disc`] serve these.
 #![forbid(unsafe_code)]
 
 pub mod chain;
 pub mod contours;
 pub mod draft;
+pub mod expected;
 pub mod largest_disc;
 pub mod oracle;
 pub mod properties;

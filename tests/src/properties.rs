@@ -17,6 +17,9 @@ use crate::winding::Polygon;
 const BAR: f64 = 1e-9;
 /// Lengths and areas against quadrature, relative.
 const MEASURES: f64 = 1e-7;
+/// What lengths and areas may be wrong by at least, in parts of the size and of its square: a loop that nearly vanishes is a
+/// difference of numbers that large.
+const ROUNDING: f64 = 1e-14;
 /// Turning angles in radians: tangents at parameters that are good to 1e-9 and better.
 const ANGLES: f64 = 1e-7;
 
@@ -172,15 +175,26 @@ fn check_measures(contour: &Contour, distance: f64, ring: &Loop, size: f64) -> R
         length += integral(&|xi| pace(xi).norm(), from, to, 1e-10 * size);
         area += integral(&|xi| 0.5 * at(xi).cross(pace(xi)), from, to, 1e-11 * size * size);
     }
-    if (length - ring.length).abs() > MEASURES * length.max(BAR * size) {
-        return failure("length", format!("{} instead of {length}", ring.length));
+    let rounding = ROUNDING * size + gaps(ring);
+    if (length - ring.length).abs() > MEASURES * length + rounding {
+        let off = (length - ring.length) / size;
+        return failure("length", format!("{} instead of {length}, {off:.1e} of the size", ring.length));
     }
     let area = if ring.closed { area } else { 0.0 };
-    // The area of a thin loop is a difference of large ones.
-    if (area - ring.area).abs() > MEASURES * area.abs() + 1e-2 * BAR * size * length {
-        return failure("area", format!("{} instead of {area}", ring.area));
+    if (area - ring.area).abs() > MEASURES * area.abs() + rounding * size {
+        let off = (area - ring.area) / (size * size);
+        return failure("area", format!("{:e} instead of {area:e}, {off:.1e} of the size squared", ring.area));
     }
     Ok(())
+}
+
+/// The sum of the gaps in a loop: its length is not defined better than this, nor its area better than this times its size.
+fn gaps(ring: &Loop) -> f64 {
+    let inner: f64 = ring.pieces.windows(2).map(|pair| (pair[1].start - pair[0].end).norm()).sum();
+    match (ring.pieces.first(), ring.pieces.last()) {
+        (Some(first), Some(last)) if ring.closed => inner + (first.start - last.end).norm(),
+        _ => inner,
+    }
 }
 
 /// The integral of `f` to `tolerance`, by halving until a Gauss rule of five points agrees with itself.
@@ -312,8 +326,9 @@ fn check_topology(contour: &Contour, offset: &Offset) -> Result<(), Failure> {
             return failure("topology", format!("loop {number} has depth {}", ring.depth));
         }
         let expected = if is_void { -sense } else { sense };
-        // A loop that encloses nothing has no sense.
-        let thin = ring.area.abs() < BAR * ring.length * size(contour).max(offset.distance.abs());
+        // A loop that encloses no more than its own gaps may add has no sense.
+        let scale = size(contour).max(offset.distance.abs());
+        let thin = ring.area.abs() < (ROUNDING * (scale + ring.length) + gaps(ring)) * scale;
         if ring.area * expected < 0.0 && !thin {
             return failure("topology", format!("loop {number} of depth {} has area {}", ring.depth, ring.area));
         }
@@ -334,11 +349,12 @@ fn check_empty(contour: &Contour, distance: f64, largest: f64, samples: usize) -
         return failure("wrongly empty", format!("a tool of {} |d| touches", reach / d));
     }
     if largest.is_nan() || largest > d * (1.0 + BAR) || reach > largest * (1.0 + BAR) {
-        return failure("largest", format!("{largest} at |d| = {d}, but one of {reach} touches"));
+        return failure("largest", format!("{largest} at |d| = {d}, but a tool of {reach} touches"));
     }
     let smaller = largest * distance.signum() * (1.0 - 1e-6);
     match trim(contour, smaller) {
-        Ok(offset) => check_clearance(contour, &offset, samples),
-        Err(error) => failure("largest", format!("{largest} at |d| = {d}, but at {smaller}: {error:?}")),
+        Ok(offset) => check_clearance(contour, &offset, samples)
+            .or_else(|found| failure("largest", format!("{largest} at |d| = {d}, but at a millionth less {found}"))),
+        Err(error) => failure("largest", format!("{largest} at |d| = {d}, but at a millionth less: {error:?}")),
     }
 }

@@ -82,7 +82,7 @@ fn the_rows_hold_every_published_figure() {
 /// The f32 tick never leaves the exact path: without a plant, the contour error is the setpoint's own.
 #[test]
 fn the_tick_stays_on_the_exact_path() {
-    use host_sim::job::{FeedOverride, Job, Units};
+    use host_sim::job::{FeedOverride, Job, Reduction, Units};
     use host_sim::path::Path;
     use host_sim::plant::Measured;
     use host_sim::reproduce::farouki2018::{CONTOUR, REDUCTIONS, WEIGHTS};
@@ -92,7 +92,11 @@ fn the_tick_stays_on_the_exact_path() {
     for weight in WEIGHTS {
         for reduction in REDUCTIONS {
             for order in [Order::First, Order::Second, Order::Third, Order::Exact] {
-                let by = FeedOverride { weight: Some(weight), reduction: Some(reduction), ..FeedOverride::default() };
+                let by = FeedOverride {
+                    weight: Some(weight),
+                    reduction: Some(Reduction::Fixed(reduction)),
+                    ..FeedOverride::default()
+                };
                 let job = Job::from_toml("farouki2018.toml", CONTOUR).unwrap().with_feed(by).unwrap();
                 let path = Path::new(&job, order).unwrap();
                 let mut last = None;

@@ -62,7 +62,7 @@ impl Ground {
     fn steps_after(&self, piece: u32) -> bool {
         let velocity = |piece: &PathPiece, end: usize| {
             let xi = piece.interval[end];
-            piece.segment.tangent(xi)
+            piece.direction(xi)
                 * (piece.stretch(xi) * piece.segment.speed(xi) / Slowness::new(piece, self.path.weight).at(xi))
         };
         let (Some(before), Some(after)) =

@@ -18,12 +18,15 @@ pub struct Emulate {
     /// w: 0 keeps the feed of the contact point, 1 that of the tool's centre
     #[arg(long, value_name = "W", allow_hyphen_values = true)]
     weight: Option<String>,
-    /// f: what is left of the feed at a corner
-    #[arg(long, value_name = "F", allow_hyphen_values = true)]
+    /// f: what is left of the feed at a corner, or `auto`: by the angle of each corner
+    #[arg(long, value_name = "F|auto", allow_hyphen_values = true)]
     reduction: Option<String>,
     /// lambda: the part of a piece on which the feed changes at a corner
     #[arg(long, value_name = "LAMBDA", allow_hyphen_values = true)]
     ramp: Option<String>,
+    /// Which loop of the trimmed offset to run
+    #[arg(long = "loop", value_name = "N")]
+    chosen: Option<String>,
     /// V in the job's units a minute
     #[arg(long, value_name = "V", allow_hyphen_values = true)]
     feed: Option<String>,
@@ -70,6 +73,7 @@ impl Emulate {
             ("--weight", &self.weight),
             ("--reduction", &self.reduction),
             ("--ramp", &self.ramp),
+            ("--loop", &self.chosen),
             ("--feed", &self.feed),
             ("--order", &self.order),
         ];

@@ -1,6 +1,7 @@
 //! The command line: one module a verb, each a thin reader of a result that the library computes.
 
 mod motion;
+mod offset;
 mod output;
 mod pacing;
 mod prepare;
@@ -13,7 +14,7 @@ use std::process::ExitCode;
 use clap::{Parser, Subcommand};
 use host_sim::input::{InputError, Source};
 use host_sim::plant::Plant;
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::{ProgressBar, ProgressFinish, ProgressStyle};
 
 /// The whole command line.
 #[derive(Parser)]
@@ -30,6 +31,7 @@ pub struct Cli {
 #[derive(Subcommand)]
 enum Verb {
     Simulate(simulate::Simulate),
+    Offset(offset::OffsetVerb),
     Reproduce(reproduce::Reproduce),
     Prepare(prepare::Prepare),
 }
@@ -39,6 +41,7 @@ impl Cli {
     pub fn run(self) -> Result<(), Failure> {
         match self.verb {
             Verb::Simulate(verb) => verb.run(),
+            Verb::Offset(verb) => verb.run(),
             Verb::Reproduce(verb) => verb.run(),
             Verb::Prepare(verb) => verb.run(),
         }
@@ -104,5 +107,12 @@ fn progress_of(length: u64, text: &str) -> ProgressBar {
     if let Ok(style) = ProgressStyle::with_template(&format!("{{bar:40}} {text}")) {
         bar.set_style(style);
     }
+    bar
+}
+
+/// Shows that work of unknown length goes on, and what it is; hidden where nobody looks.
+fn spinner(text: &str) -> ProgressBar {
+    let bar = ProgressBar::new_spinner().with_message(text.to_string()).with_finish(ProgressFinish::AndClear);
+    bar.enable_steady_tick(std::time::Duration::from_millis(100));
     bar
 }

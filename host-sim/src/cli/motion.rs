@@ -2,7 +2,7 @@
 
 use clap::{Args, ValueEnum};
 use host_sim::input::InputError;
-use host_sim::job::{FeedOverride, Job};
+use host_sim::job::{FeedOverride, Job, Reduction};
 use host_sim::path::Path;
 use shared::piece::Order;
 
@@ -14,12 +14,17 @@ pub struct Motion {
     /// w: 0 keeps the feed of the contact point, 1 that of the tool's centre
     #[arg(long, value_name = "W", allow_negative_numbers = true)]
     weight: Option<f64>,
-    /// f: what is left of the feed at a corner
-    #[arg(long, value_name = "F", allow_negative_numbers = true)]
-    reduction: Option<f64>,
+    /// f: what is left of the feed at a corner. `auto` goes by its angle theta, so that the velocity always changes by the same
+    /// step: f = 0.177/sin(|theta|/2), which is 0.25 at a right angle, and lambda = ramp (1 - f^2)/0.9375; no ramp below 20.4
+    /// degrees
+    #[arg(long, value_name = "F|auto", allow_negative_numbers = true)]
+    reduction: Option<Reduction>,
     /// lambda: the part of a piece on which the feed changes at a corner
     #[arg(long, value_name = "LAMBDA", allow_negative_numbers = true)]
     ramp: Option<f64>,
+    /// Which loop of the trimmed offset to run, by the number that `hodograph offset` lists
+    #[arg(long = "loop", value_name = "N")]
+    chosen: Option<usize>,
     /// V in the job's units a minute
     #[arg(long, value_name = "V", allow_negative_numbers = true)]
     feed: Option<f64>,
@@ -51,7 +56,7 @@ impl Motion {
     /// Reads the job and makes its path.
     pub fn path(&self) -> Result<(Job, Path), InputError> {
         let by = FeedOverride { rate: self.feed, weight: self.weight, reduction: self.reduction, ramp: self.ramp };
-        let job = Job::read(&self.job)?.with_feed(by)?;
+        let job = Job::read(&self.job)?.with_feed(by)?.with_loop(self.chosen);
         let order = match self.order {
             OrderName::First => Order::First,
             OrderName::Second => Order::Second,

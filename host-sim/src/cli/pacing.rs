@@ -38,17 +38,20 @@ impl Pacing {
         }
         let mm = job.units.mm();
         let limits = AxisLimits { acceleration: [acceleration * mm; 2], jerk: [jerk * mm; 2] };
-        path.header.pace = pacing::within(&path, &limits).map_err(|error| match error {
-            PacingError::Acceleration { piece, asked } => job.piece_error(
-                piece,
-                format_args!(
-                    "it asks an axis for {:.1} {}/s2 at its own feed, of {acceleration}; lower the feed or raise --acceleration",
-                    asked / mm,
-                    job.units.short()
-                ),
-            ),
+        let pace = pacing::within(&path, &limits).map_err(|error| match error {
+            PacingError::Acceleration { piece, asked } => {
+                let (asked, unit) = (asked / mm, job.units.short());
+                let message = format!(
+                    "it asks an axis for {asked:.1} {unit}/s2 at its own feed, of {acceleration}; lower the feed or raise --acceleration"
+                );
+                match path.pieces.get(piece) {
+                    Some(at) => job.piece_error(piece, at.along, message),
+                    None => InputError::new("--acceleration", message),
+                }
+            }
             PacingError::Refused(error) => InputError::new("--acceleration or --jerk", error),
         })?;
+        path.header.pace = pace;
         Ok(path)
     }
 }

@@ -189,4 +189,11 @@ fn print(outcome: &Outcome) {
             println!("warning: {axis} loses steps, {lost} full steps at the worst; the part would be spoiled");
         }
     }
+    for (axis, ticks) in ["x", "y"].iter().zip(outcome.overrun_ticks) {
+        if ticks > 0 {
+            println!(
+                "warning: {axis} is asked for more steps than its pulses allow in {ticks} ticks; lower the feed or the microsteps"
+            );
+        }
+    }
 }

@@ -3,57 +3,73 @@
 use shared::complex::Complex;
 use shared::curve::{Arc, Curve as _, Line, PhQuintic, Segment, hermite};
 
-use super::schema::{Point, RawJob, RawPiece, RawSegment};
-use super::{Along, Corner, FeedWish, GivenPiece, Job, Places, Units};
+use super::schema::{Point, RawFeed, RawJob, RawPiece, RawReduction, RawSegment};
+use super::{Corner, FeedWish, GivenPiece, Job, Part, Place, Places, Reduction, Units};
 use super::{check_ramp, check_rate, check_reduction, check_weight};
+use crate::contour::{Along, Contour};
 use crate::input::{InputError, Source};
 
 /// A gap of this many mm is none unless the file says otherwise: what four decimals of a millimetre may leave.
 const TOLERANCE_MM: f64 = 1e-3;
 
-/// Tangents that differ by less than this angle meet smoothly.
-const SMOOTH_RAD: f64 = 1e-6;
+/// Reads all of a job.
+pub(super) fn job(source: Source) -> Result<Job, InputError> {
+    let raw = parse(&source)?;
+    let Some(feed) = &raw.feed else {
+        let message = "there is no [feed]; a motion needs at least its rate, as `rate = 600.0` under [feed]";
+        return Err(InputError::new(source.name, message));
+    };
+    let feed = read_feed(&source, feed, raw.units)?;
+    let (part, tolerance) = read_part(source, &raw)?;
+    let Part { units, offset, contour, places } = part;
+    let pieces = read_pieces(&places.source, &raw, &contour, offset)?;
+    let chosen = raw.offset.and_then(|offset| offset.chosen).map(toml::Spanned::into_inner);
+    Ok(Job { units, tolerance, rest: raw.rest, offset, chosen, feed, contour, pieces, places })
+}
 
-pub(super) fn read(source: Source) -> Result<Job, InputError> {
-    let raw: RawJob = toml::from_str(&source.text)
-        .map_err(|error| source.error(&error.span().unwrap_or(0..0), first_line(error.message())))?;
+/// Reads what an offset takes; what else the file says must be well-formed, no more.
+pub(super) fn part(source: Source) -> Result<Part, InputError> {
+    let raw = parse(&source)?;
+    read_part(source, &raw).map(|(part, _)| part)
+}
+
+fn parse(source: &Source) -> Result<RawJob, InputError> {
+    toml::from_str(&source.text)
+        .map_err(|error| source.error(&error.span().unwrap_or(0..0), first_line(error.message())))
+}
+
+/// Contour and offset, and the widest gap that is taken for none, in mm.
+fn read_part(source: Source, raw: &RawJob) -> Result<(Part, f64), InputError> {
     let mm = raw.units.mm();
     let tolerance = match &raw.tolerance {
         None => TOLERANCE_MM,
         Some(value) if *value.get_ref() > 0.0 && value.get_ref().is_finite() => value.get_ref() * mm,
         Some(value) => return Err(source.error(&value.span(), "the tolerance must be a number above zero")),
     };
-    let offset = match &raw.offset {
-        None => 0.0,
-        Some(offset) if offset.distance.get_ref().is_finite() => offset.distance.get_ref() * mm,
+    let (offset, distance) = match &raw.offset {
+        None => (0.0, Place::Nowhere),
+        Some(offset) if offset.distance.get_ref().is_finite() => {
+            (offset.distance.get_ref() * mm, Place::File(offset.distance.span()))
+        }
         Some(offset) => return Err(source.error(&offset.distance.span(), "the offset distance is not a number")),
     };
-    let feed = read_feed(&source, &raw)?;
-    let segments = read_segments(&source, &raw, tolerance)?;
-    let pieces = read_pieces(&source, &raw, &segments, offset)?;
+    let contour = Contour { segments: read_segments(&source, raw, tolerance)?, closed: *raw.closed.get_ref() };
+    let chosen = raw.offset.as_ref().and_then(|offset| offset.chosen.as_ref());
     let places = Places {
         segments: raw.segment.iter().map(|s| s.span()).collect(),
         pieces: raw.piece.iter().map(|p| p.span()).collect(),
+        distance,
+        chosen: chosen.map_or(Place::Nowhere, |chosen| Place::File(chosen.span())),
         source,
     };
-    Ok(Job {
-        units: raw.units,
-        closed: *raw.closed.get_ref(),
-        tolerance,
-        rest: raw.rest,
-        offset,
-        feed,
-        segments,
-        pieces,
-        places,
-    })
+    Ok((Part { units: raw.units, offset, contour, places }, tolerance))
 }
 
 fn first_line(message: &str) -> &str {
     message.lines().next().unwrap_or(message)
 }
 
-fn read_feed(source: &Source, raw: &RawJob) -> Result<FeedWish, InputError> {
+fn read_feed(source: &Source, raw: &RawFeed, units: Units) -> Result<FeedWish, InputError> {
     let checked = |value: &toml::Spanned<f64>, check: fn(f64) -> Result<f64, String>| {
         check(*value.get_ref()).map_err(|message| source.error(&value.span(), message))
     };
@@ -61,11 +77,19 @@ fn read_feed(source: &Source, raw: &RawJob) -> Result<FeedWish, InputError> {
         Some(value) => checked(value, check),
         None => Ok(default),
     };
+    let reduction = match &raw.reduction {
+        None => Reduction::Fixed(1.0),
+        Some(value) => match value.get_ref() {
+            RawReduction::Number(factor) => check_reduction(*factor).map(Reduction::Fixed),
+            RawReduction::Word(word) => word.parse().map_err(|m: String| format!("the reduction is \"{word}\"; {m}")),
+        }
+        .map_err(|message| source.error(&value.span(), message))?,
+    };
     Ok(FeedWish {
-        rate: checked(&raw.feed.rate, check_rate)? * raw.units.mm() / 60.0,
-        weight: optional(&raw.feed.weight, 0.0, check_weight)?,
-        reduction: optional(&raw.feed.reduction, 1.0, check_reduction)?,
-        ramp: optional(&raw.feed.ramp, 0.25, check_ramp)?,
+        rate: checked(&raw.rate, check_rate)? * units.mm() / 60.0,
+        weight: optional(&raw.weight, 0.0, check_weight)?,
+        reduction,
+        ramp: optional(&raw.ramp, 0.25, check_ramp)?,
     })
 }
 
@@ -77,7 +101,7 @@ fn read_segments(source: &Source, raw: &RawJob, tolerance: f64) -> Result<Vec<Se
     for (number, item) in raw.segment.iter().enumerate() {
         let fail = |message: String| source.error(&item.span(), format_args!("segment {number}: {message}"));
         let segment = segment(item.get_ref(), end, raw.units, tolerance).map_err(fail)?;
-        let [start, new_end] = Job::ends(&segment);
+        let [start, new_end] = [0.0, 1.0].map(|xi| segment.point(xi));
         if let Some(before) = end {
             let gap = (start - before).norm();
             if gap > tolerance {
@@ -137,7 +161,7 @@ fn segment(raw: &RawSegment, end: Option<Complex<f64>>, units: Units, tolerance:
     }
     // The shortest motion that a setpoint can show is 4 nm.
     if length < 4e-6 {
-        return Err(format!("it has no length ({length} mm); leave it out"));
+        return Err(format!("it has no length ({}); leave it out", units.length(length)));
     }
     Ok(segment)
 }
@@ -175,45 +199,33 @@ fn arc(
     Ok(Arc { start, radius, sweep })
 }
 
-fn read_pieces(
-    source: &Source,
-    raw: &RawJob,
-    segments: &[Segment<f64>],
-    offset: f64,
-) -> Result<Vec<GivenPiece>, InputError> {
-    if raw.piece.is_empty() {
-        if offset != 0.0 {
-            return Err(InputError::new(
-                source.name.clone(),
-                "the job has an offset but no pieces, and offsets are not trimmed here yet; give the trimmed offset as [[piece]]",
-            ));
-        }
-        return Ok(whole_segments(segments, *raw.closed.get_ref()));
-    }
-    let mut pieces = Vec::with_capacity(raw.piece.len());
-    for (number, item) in raw.piece.iter().enumerate() {
-        let piece = piece(item.get_ref(), segments, offset, *raw.closed.get_ref())
-            .map_err(|message| source.error(&item.span(), format_args!("piece {number}: {message}")))?;
-        pieces.push(piece);
-    }
-    Ok(pieces)
+fn read_pieces(source: &Source, raw: &RawJob, contour: &Contour, offset: f64) -> Result<Vec<GivenPiece>, InputError> {
+    let read = |(number, item): (usize, &toml::Spanned<RawPiece>)| {
+        piece(item.get_ref(), contour, offset)
+            .map_err(|message| source.error(&item.span(), format_args!("piece {number}: {message}")))
+    };
+    raw.piece.iter().enumerate().map(read).collect()
 }
 
-fn piece(raw: &RawPiece, segments: &[Segment<f64>], offset: f64, closed: bool) -> Result<GivenPiece, String> {
+fn piece(raw: &RawPiece, contour: &Contour, offset: f64) -> Result<GivenPiece, String> {
+    let interval = |from: Option<f64>, to: Option<f64>| {
+        let (from, to) = (from.unwrap_or(0.0), to.unwrap_or(1.0));
+        let usable = from >= 0.0 && from < to && to <= 1.0;
+        usable.then_some((from, to)).ok_or_else(|| format!("it runs from {from} to {to}; it needs 0 <= from < to <= 1"))
+    };
     let along = match (raw.segment, raw.from, raw.to, &raw.fill) {
         (Some(segment), from, to, None) => {
-            if segment >= segments.len() {
-                return Err(format!("there is no segment {segment}; the last one is {}", segments.len() - 1));
+            let last = contour.segments.len() - 1;
+            if segment > last {
+                return Err(format!("there is no segment {segment}; the last one is {last}"));
             }
-            let (from, to) = (from.unwrap_or(0.0), to.unwrap_or(1.0));
-            if !(from >= 0.0 && from < to && to <= 1.0) {
-                return Err(format!("it runs from {from} to {to}; it needs 0 <= from < to <= 1"));
-            }
+            let (from, to) = interval(from, to)?;
             Along::Segment { segment, from, to }
         }
         (None, None, None, Some(fill)) => {
             let node = fill.node;
-            let turn = turning_angle(segments, node, closed).ok_or_else(|| {
+            let (from, to) = interval(fill.from, fill.to)?;
+            let turn = contour.turning_angle(node).ok_or_else(|| {
                 format!("there is no node {node}; node i is where segment i ends and the next one begins")
             })?;
             if turn * offset <= 0.0 {
@@ -221,7 +233,7 @@ fn piece(raw: &RawPiece, segments: &[Segment<f64>], offset: f64, closed: bool) -
                     "node {node} is not convex for this offset, so there is no gap to fill; trim there"
                 ));
             }
-            Along::Fill { node }
+            Along::Fill { node, from, to }
         }
         _ => return Err("it needs either `segment` (with `from` and `to`) or `fill = { node = .. }`".to_string()),
     };
@@ -241,31 +253,4 @@ fn piece(raw: &RawPiece, segments: &[Segment<f64>], offset: f64, closed: bool) -
         start: corner(raw.start_corner, "start", raw.start_ramp, raw.start_reduction)?,
         end: corner(raw.end_corner, "end", raw.end_ramp, raw.end_reduction)?,
     })
-}
-
-/// The angle of equation (3) at the node where segment `node` ends; none where there is no such node.
-pub(crate) fn turning_angle(segments: &[Segment<f64>], node: usize, closed: bool) -> Option<f64> {
-    let before = segments.get(node)?;
-    let after = match segments.get(node + 1) {
-        Some(after) => after,
-        None if closed => segments.first()?,
-        None => return None,
-    };
-    Some((before.tangent(1.0).conj() * after.tangent(0.0)).arg())
-}
-
-/// The contour itself as a path: a corner wherever the tangent breaks.
-fn whole_segments(segments: &[Segment<f64>], closed: bool) -> Vec<GivenPiece> {
-    let corner = |node: usize| {
-        let breaks = turning_angle(segments, node, closed).is_some_and(|angle| angle.abs() > SMOOTH_RAD);
-        breaks.then(Corner::default)
-    };
-    let last = segments.len() - 1;
-    (0..segments.len())
-        .map(|segment| GivenPiece {
-            along: Along::Segment { segment, from: 0.0, to: 1.0 },
-            start: corner(segment.checked_sub(1).unwrap_or(last)),
-            end: corner(segment),
-        })
-        .collect()
 }

@@ -1,44 +1,18 @@
 //! What a person wants cut: a contour, the tool's offset, the feed, and possibly the trimmed pieces of the offset.
 
 mod contour_file;
+mod places;
+mod reduction;
 mod schema;
+mod trim;
 
-use std::ops::Range;
-
-use serde::{Deserialize, Serialize};
-use shared::complex::Complex;
-use shared::curve::Segment;
-use shared::feed::Ramp;
-
+use crate::contour::{Along, Contour};
 use crate::input::{InputError, Source};
+use crate::offset::Offset;
 
-/// The unit of lengths in a job's file and in what is reported of it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Units {
-    /// Millimetres; feeds in mm/min.
-    Mm,
-    /// Inches; feeds in inch/min.
-    Inch,
-}
-
-impl Units {
-    /// Millimetres in one unit.
-    pub fn mm(self) -> f64 {
-        match self {
-            Self::Mm => 1.0,
-            Self::Inch => 25.4,
-        }
-    }
-
-    /// As it is written after a number.
-    pub fn short(self) -> &'static str {
-        match self {
-            Self::Mm => "mm",
-            Self::Inch => "in",
-        }
-    }
-}
+pub use crate::units::Units;
+use places::{Place, Places};
+pub use reduction::{Corner, Reduction};
 
 /// The feed as a person gives it, in mm and seconds.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -48,7 +22,7 @@ pub struct FeedWish {
     /// w.
     pub weight: f64,
     /// f at every corner that has none of its own.
-    pub reduction: f64,
+    pub reduction: Reduction,
     /// lambda at every corner that has none of its own.
     pub ramp: f64,
 }
@@ -61,44 +35,9 @@ pub struct FeedOverride {
     /// In the place of `feed.weight`.
     pub weight: Option<f64>,
     /// In the place of `feed.reduction`.
-    pub reduction: Option<f64>,
+    pub reduction: Option<Reduction>,
     /// In the place of `feed.ramp`.
     pub ramp: Option<f64>,
-}
-
-/// The curve that a given piece runs along.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Along {
-    /// A part of a segment.
-    Segment {
-        /// Its number, from 0.
-        segment: usize,
-        /// First parameter.
-        from: f64,
-        /// Last parameter.
-        to: f64,
-    },
-    /// The arc that fills the gap at a convex node.
-    Fill {
-        /// The node at the end of the segment of this number.
-        node: usize,
-    },
-}
-
-/// What a corner at an end of a piece says of its ramp: a value of its own, or the job's.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Corner {
-    /// f, in the place of the job's.
-    pub reduction: Option<f64>,
-    /// lambda, in the place of the job's.
-    pub ramp: Option<f64>,
-}
-
-impl Corner {
-    /// The ramp here under the job's feed.
-    pub fn ramp(&self, feed: &FeedWish) -> Ramp<f64> {
-        Ramp { length: self.ramp.unwrap_or(feed.ramp), factor: self.reduction.unwrap_or(feed.reduction) }
-    }
 }
 
 /// A piece of the trimmed offset, as a job gives it.
@@ -112,52 +51,50 @@ pub struct GivenPiece {
     pub end: Option<Corner>,
 }
 
+/// What a file says of the part and the tool: all that an offset takes. Lengths in mm.
+#[derive(Clone, Debug)]
+pub struct Part {
+    /// The unit of its file.
+    pub units: Units,
+    /// The signed offset distance d, positive right of travel; 0 where the file gives none.
+    pub offset: f64,
+    /// The contour C.
+    pub contour: Contour,
+    places: Places,
+}
+
 /// A job: validated as far as it can be without making a path of it. Lengths in mm.
 #[derive(Clone, Debug)]
 pub struct Job {
     /// The unit of its file.
     pub units: Units,
-    /// Whether the contour ends where it starts.
-    pub closed: bool,
     /// The widest gap that is taken for none.
     pub tolerance: f64,
     /// Whether the path begins and ends at rest.
     pub rest: bool,
     /// The signed offset distance d, positive right of travel.
     pub offset: f64,
+    /// Which loop of the trimmed offset is run, where one was chosen.
+    pub chosen: Option<usize>,
     /// The feed.
     pub feed: FeedWish,
     /// The contour C.
-    pub segments: Vec<Segment<f64>>,
-    /// The trimmed offset; without offset, the contour itself.
+    pub contour: Contour,
+    /// The trimmed offset as the file gives it; without any the offset is trimmed when a path is made.
     pub pieces: Vec<GivenPiece>,
     /// Where the file says what, for errors that show later.
     places: Places,
 }
 
-#[derive(Clone, Debug)]
-struct Places {
-    source: Source,
-    segments: Vec<Range<usize>>,
-    pieces: Vec<Range<usize>>,
-}
-
 impl Job {
     /// Reads a job by its file's ending. Errors name file, line and column.
     pub fn read(name: &str) -> Result<Self, InputError> {
-        let ending = name.rsplit_once('.').map_or("", |(_, ending)| ending).to_ascii_lowercase();
-        match ending.as_str() {
-            "toml" => contour_file::read(Source::read(name)?),
-            _ => Err(InputError::new(
-                name,
-                "is not a job that can be read here; give a contour in TOML (.toml), as examples/farouki2018.toml",
-            )),
-        }
+        contour_file::job(open(name)?)
     }
 
     /// Reads a contour from a text that is at hand; `name` stands in errors.
     pub fn from_toml(name: &str, text: &str) -> Result<Self, InputError> {
-        contour_file::read(Source { name: name.to_string(), text: text.to_string() })
+        contour_file::job(Source { name: name.to_string(), text: text.to_string() })
     }
 
     /// This job with values from the command line in the place of its own. Errors name the option.
@@ -169,7 +106,7 @@ impl Job {
             self.feed.weight = check_weight(weight).map_err(|m| InputError::new("--weight", m))?;
         }
         if let Some(reduction) = by.reduction {
-            self.feed.reduction = check_reduction(reduction).map_err(|m| InputError::new("--reduction", m))?;
+            self.feed.reduction = check_wish(reduction).map_err(|m| InputError::new("--reduction", m))?;
         }
         if let Some(ramp) = by.ramp {
             self.feed.ramp = check_ramp(ramp).map_err(|m| InputError::new("--ramp", m))?;
@@ -177,25 +114,94 @@ impl Job {
         Ok(self)
     }
 
-    /// An error about the piece with this number.
-    pub fn piece_error(&self, piece: usize, message: impl std::fmt::Display) -> InputError {
-        let message = format!("piece {piece}: {message}");
-        let Places { source, segments, pieces } = &self.places;
-        match pieces.get(piece).or_else(|| segments.get(piece)) {
-            Some(span) => source.error(span, message),
-            None => InputError::new(source.name.clone(), message),
+    /// This job with the loop of this number chosen, if there is one, in the place of its own choice.
+    pub fn with_loop(mut self, number: Option<usize>) -> Self {
+        if number.is_some() {
+            (self.chosen, self.places.chosen) = (number, Place::Option("--loop"));
         }
+        self
+    }
+
+    /// The trimmed offset of the contour. Errors name the place in the file that they are about.
+    pub fn trim(&self) -> Result<Offset, InputError> {
+        self.places.trim(&self.contour, self.offset, self.units)
+    }
+
+    /// An error about a piece of the path: at its `[[piece]]` where the job gives its pieces, at the `[[segment]]` that it runs
+    /// along where it does not.
+    pub fn piece_error(&self, piece: usize, along: Along, message: impl std::fmt::Display) -> InputError {
+        if !self.pieces.is_empty() {
+            return self.places.piece_error(piece, message);
+        }
+        match along {
+            Along::Segment { segment, from, to } => {
+                self.places.segment_error(segment, format_args!("segment {segment} from {from} to {to}: {message}"))
+            }
+            Along::Fill { node, .. } => {
+                self.places.segment_error(node, format_args!("the arc about node {node}: {message}"))
+            }
+        }
+    }
+
+    /// An error about the offset distance.
+    pub fn distance_error(&self, message: impl std::fmt::Display) -> InputError {
+        self.places.error(&self.places.distance, message)
+    }
+
+    /// An error about the choice of a loop, or the lack of one.
+    pub fn choice_error(&self, message: impl std::fmt::Display) -> InputError {
+        self.places.error(&self.places.chosen, message)
     }
 
     /// The name of the job's file.
     pub fn name(&self) -> &str {
         &self.places.source.name
     }
+}
 
-    /// The first and last point of a segment.
-    pub(crate) fn ends(segment: &Segment<f64>) -> [Complex<f64>; 2] {
-        use shared::curve::Curve as _;
-        [segment.point(0.0), segment.point(1.0)]
+impl Part {
+    /// Reads contour and offset of a file by its ending; it needs no feed. Errors name file, line and column.
+    pub fn read(name: &str) -> Result<Self, InputError> {
+        contour_file::part(open(name)?)
+    }
+
+    /// Reads a contour from a text that is at hand; `name` stands in errors.
+    pub fn from_toml(name: &str, text: &str) -> Result<Self, InputError> {
+        contour_file::part(Source { name: name.to_string(), text: text.to_string() })
+    }
+
+    /// This part with another distance, in the file's units, if there is one, in the place of its own.
+    pub fn with_distance(mut self, distance: Option<f64>) -> Self {
+        if let Some(distance) = distance {
+            (self.offset, self.places.distance) = (distance * self.units.mm(), Place::Option("--distance"));
+        }
+        self
+    }
+
+    /// The trimmed offset. Errors name the place in the file, or the option, that they are about.
+    pub fn trim(&self) -> Result<Offset, InputError> {
+        if self.places.distance == Place::Nowhere {
+            let message = "the file has no [offset] with a distance; give the tool's radius with --distance, positive right of travel";
+            return Err(self.places.error(&Place::Nowhere, message));
+        }
+        self.places.trim(&self.contour, self.offset, self.units)
+    }
+
+    /// The name of the file.
+    pub fn name(&self) -> &str {
+        &self.places.source.name
+    }
+}
+
+/// The text of a job's file. Errors: it cannot be read, or its ending tells of something else.
+fn open(name: &str) -> Result<Source, InputError> {
+    let ending = name.rsplit_once('.').map_or("", |(_, ending)| ending).to_ascii_lowercase();
+    match ending.as_str() {
+        "toml" => Source::read(name),
+        _ => Err(InputError::new(
+            name,
+            "is not a job that can be read here; give a contour in TOML (.toml), as examples/farouki2018.toml",
+        )),
     }
 }
 
@@ -217,6 +223,13 @@ fn check_reduction(reduction: f64) -> Result<f64, String> {
     usable.then_some(reduction).ok_or_else(|| {
         format!("the reduction is {reduction}; it must be above 0, or the corner is never reached, and at most 1")
     })
+}
+
+fn check_wish(reduction: Reduction) -> Result<Reduction, String> {
+    match reduction {
+        Reduction::Fixed(factor) => check_reduction(factor).map(Reduction::Fixed),
+        Reduction::Auto => Ok(reduction),
+    }
 }
 
 fn check_ramp(ramp: f64) -> Result<f64, String> {

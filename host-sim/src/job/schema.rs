@@ -14,7 +14,7 @@ pub(super) struct RawJob {
     pub rest: bool,
     pub tolerance: Option<Spanned<f64>>,
     pub offset: Option<RawOffset>,
-    pub feed: RawFeed,
+    pub feed: Option<RawFeed>,
     #[serde(default)]
     pub segment: Vec<Spanned<RawSegment>>,
     #[serde(default)]
@@ -25,6 +25,8 @@ pub(super) struct RawJob {
 #[serde(deny_unknown_fields)]
 pub(super) struct RawOffset {
     pub distance: Spanned<f64>,
+    #[serde(rename = "loop")]
+    pub chosen: Option<Spanned<usize>>,
 }
 
 #[derive(Deserialize)]
@@ -32,8 +34,15 @@ pub(super) struct RawOffset {
 pub(super) struct RawFeed {
     pub rate: Spanned<f64>,
     pub weight: Option<Spanned<f64>>,
-    pub reduction: Option<Spanned<f64>>,
+    pub reduction: Option<Spanned<RawReduction>>,
     pub ramp: Option<Spanned<f64>>,
+}
+
+#[derive(Clone, Deserialize)]
+#[serde(untagged, expecting = "expected a number above 0 and at most 1, or \"auto\"")]
+pub(super) enum RawReduction {
+    Number(f64),
+    Word(String),
 }
 
 pub(super) type Point = [f64; 2];
@@ -100,4 +109,6 @@ pub(super) struct RawPiece {
 #[serde(deny_unknown_fields)]
 pub(super) struct RawFill {
     pub node: usize,
+    pub from: Option<f64>,
+    pub to: Option<f64>,
 }

@@ -212,9 +212,10 @@ fn with_ends([from, to]: [f64; 2], samples: usize) -> impl Iterator<Item = f64> 
         .map(move |x| if x < 1.0 { from + (to - from) * x } else { to })
 }
 
-/// Samples inside an interval.
+/// Samples inside an interval: points close to its ends, and an even grid.
 fn inside([from, to]: [f64; 2], samples: usize) -> impl Iterator<Item = f64> {
-    (0..samples).map(move |k| from + (to - from) * (k as f64 + 0.5) / samples as f64)
+    let grid = (0..samples).map(move |k| (k as f64 + 0.5) / samples as f64);
+    grid.chain(NEAR_ENDS).chain(NEAR_ENDS.map(|x| 1.0 - x)).map(move |x| from + (to - from) * x)
 }
 
 #[cfg(test)]

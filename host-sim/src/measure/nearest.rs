@@ -211,11 +211,11 @@ pub(super) fn squared_distance(points: &[Complex<f64>; 6]) -> [f64; 11] {
 /// Bernstein coefficients on both halves.
 pub(super) fn halves<const N: usize>(mut d: [f64; N]) -> ([f64; N], [f64; N]) {
     let mut left = d;
-    for k in 1..N {
+    for (k, slot) in left.iter_mut().enumerate().skip(1) {
         for j in 0..N - k {
             d[j] = 0.5 * (d[j] + d[j + 1]);
         }
-        left[k] = d[0];
+        *slot = d[0];
     }
     (left, d)
 }
@@ -244,7 +244,8 @@ pub(super) fn foot(curve: &PhQuintic<f64>, p: Complex<f64>, from: f64, to: f64) 
             high = xi;
         }
         let newton = xi - value / rise;
-        let next = if newton > low && newton < high { newton } else { 0.5 * (low + high) };
+        // A step that rounding makes nothing of leads back to an end of the bracket: that is the zero.
+        let next = if newton >= low && newton <= high { newton } else { 0.5 * (low + high) };
         let step = (next - xi).abs();
         xi = next;
         // Newton's error is about the square of its last step.
@@ -253,4 +254,113 @@ pub(super) fn foot(curve: &PhQuintic<f64>, p: Complex<f64>, from: f64, to: f64) 
         }
     }
     xi
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn at(x: f64, y: f64) -> Complex<f64> {
+        Complex::new(x, y)
+    }
+
+    fn contour(segment: Segment<f64>) -> Contour {
+        Contour { segments: vec![segment], closed: false }
+    }
+
+    #[test]
+    fn a_line_has_feet_and_ends() {
+        let line = contour(Segment::Line(Line { start: at(1.0, 1.0), end: at(4.0, 5.0) }));
+        let nearest = Nearest::new(&line);
+        // 2 to the left of the point 3 along; behind the end.
+        let foot = nearest.at(at(1.0, 1.0) + at(0.6, 0.8) * 3.0 + at(-0.8, 0.6) * 2.0);
+        assert!((foot.distance - 2.0).abs() < 1e-15 && (foot.xi - 0.6).abs() < 1e-15);
+        assert_eq!(nearest.at(at(7.0, 9.0)), Foot { distance: 5.0, segment: 0, xi: 1.0, point: at(4.0, 5.0) });
+        assert_eq!(nearest.at(at(1.0, 0.0)).distance, 1.0);
+    }
+
+    /// An arc of three quarters, from the right anticlockwise to the bottom, and the same one travelled back.
+    #[test]
+    fn an_arc_has_feet_and_ends() {
+        let forth = Arc { start: at(5.0, 1.0), radius: at(3.0, 0.0), sweep: 0.75 * TAU };
+        let back = Arc { start: at(2.0, -2.0), radius: at(0.0, -3.0), sweep: -0.75 * TAU };
+        for arc in [forth, back] {
+            let arc = contour(Segment::Arc(arc));
+            let nearest = Nearest::new(&arc);
+            for angle in [0.1, 1.0, 3.0, 4.5] {
+                let out = at(f64::cos(angle), f64::sin(angle));
+                for radius in [1e-3, 1.0, 2.9, 3.1, 40.0] {
+                    let foot = nearest.at(at(2.0, 1.0) + out * radius);
+                    assert!((foot.distance - (3.0 - radius).abs()).abs() < 1e-14, "{angle} {radius} {foot:?}");
+                }
+            }
+            // In the quarter that is left out the nearer end counts.
+            assert!((nearest.at(at(6.0, 0.0)).distance - 2.0_f64.sqrt()).abs() < 1e-14);
+            assert!((nearest.at(at(3.0, -3.0)).distance - 2.0_f64.sqrt()).abs() < 1e-14);
+        }
+    }
+
+    /// An arc of 1e9 mm radius over a chord of 100 mm is 1.25 um high in its middle.
+    #[test]
+    fn a_nearly_straight_arc_keeps_its_digits() {
+        let sweep = 1e-7;
+        // The radius leaves the start at half the sweep to the normal of the chord.
+        let radius = at(f64::sin(-0.5 * sweep), -f64::cos(-0.5 * sweep)) * 1e9;
+        let arc = contour(Segment::Arc(Arc { start: at(0.0, 0.0), radius, sweep }));
+        let nearest = Nearest::new(&arc);
+        let sagitta = 1e9 * 2.0 * f64::sin(0.25 * sweep).powi(2);
+        let foot = nearest.at(at(50.0, 7.0));
+        assert!((foot.distance - (7.0 + sagitta)).abs() < 1e-12, "{}", foot.distance - 7.0);
+    }
+
+    /// On curves with a bend, a loop and a near cusp, against 20 000 points of each: no point is nearer than the nearest one,
+    /// and the nearest of them is farther by no more than their spacing allows.
+    #[test]
+    fn no_sample_of_a_ph_curve_is_nearer() {
+        let w = [
+            [at(3.0, -2.0), at(-1.0, 2.5), at(4.0, 1.0)],
+            [at(1.0, -4.0), at(1.0, 0.0), at(1.0, 4.0)],
+            [at(2.0, 0.0), at(-2.001, 0.01), at(2.0, 0.02)],
+            [at(5.0, 0.0), at(5.0, 0.0), at(5.0, 0.0)],
+        ];
+        for w in w {
+            let curve = PhQuintic { start: at(-3.0, 1.0), w };
+            let samples: Vec<_> = (0..=20_000).map(|k| curve.point(f64::from(k) / 20_000.0)).collect();
+            let spacing = samples.windows(2).map(|pair| (pair[1] - pair[0]).norm()).fold(0.0, f64::max);
+            let bent = contour(Segment::Ph(curve));
+            let nearest = Nearest::new(&bent);
+            for k in 0..400 {
+                let p = at(-12.0 + f64::from(k % 20) * 1.7, -12.0 + f64::from(k / 20) * 1.3);
+                let brute = samples.iter().map(|q| (*q - p).norm()).fold(f64::INFINITY, f64::min);
+                let foot = nearest.at(p);
+                assert!(foot.distance <= brute + 1e-14, "{p:?}: {} beside {brute}", foot.distance);
+                assert!(foot.distance >= brute - spacing, "{p:?}: {} beside {brute}", foot.distance);
+                assert_eq!((foot.point - p).norm(), foot.distance);
+                assert_eq!(curve.point(foot.xi), foot.point);
+                // Nor are its neighbours at a thousandth of that spacing.
+                for xi in [foot.xi - 5e-8, foot.xi + 5e-8] {
+                    assert!((curve.point(xi.clamp(0.0, 1.0)) - p).norm() >= foot.distance - 1e-14, "{p:?}");
+                }
+            }
+        }
+    }
+
+    /// From the centre of a curve's osculating circle all of its neighbourhood is equally far to third order: the hardest place
+    /// for a search by samples.
+    #[test]
+    fn the_centre_of_curvature_is_no_trap() {
+        // r' = (1 + 2 i x)^2 on -1..=1: the vertex bends with the radius 1/4 in x, and in xi = (x + 1)/2 all lengths halve.
+        let curve = PhQuintic { start: at(0.0, 0.0), w: [at(1.0, -2.0), at(1.0, 0.0), at(1.0, 2.0)] };
+        let vertex = curve.point(0.5);
+        let bent = contour(Segment::Ph(curve));
+        let radius = 1.0 / curve.curvature(0.5);
+        assert!((radius - 0.125).abs() < 1e-15);
+        for part in [0.5, 0.99, 1.0] {
+            let foot = Nearest::new(&bent).at(vertex + at(0.0, radius * part));
+            assert!((foot.distance - radius * part).abs() < 1e-15, "{part}: {foot:?}");
+        }
+        // Beyond it the vertex is not nearest any more.
+        let foot = Nearest::new(&bent).at(vertex + at(0.0, radius * 1.01));
+        assert!(foot.distance < radius * 1.01 - 1e-6);
+    }
 }

@@ -15,6 +15,12 @@ use super::{Along, Contour, Loop, Piece};
 /// A piece shorter than this, in the unit of the frame, is left out: the gap that it leaves is as small.
 const SHORTEST: f64 = 1e-10;
 
+/// A part whose tangent turns by less than this, in radians, has its area from Gauss's rule: eight nodes leave nothing to see.
+const STRAIGHT: f64 = 0.02;
+
+/// A loop shorter than this is a tool that just fits a place, to rounding: left out, as the largest tool that fits is.
+const PLUNGE: f64 = 2.5e-9;
+
 /// How far a trim point may move when it is made exact, in the unit of the frame: more than the change of the distance can ask for.
 const POLISH: f64 = 1e-7;
 
@@ -38,7 +44,10 @@ pub fn loops(contour: &Contour, ground: &Ground, traced: &Traced, distance: f64)
     let trims: Vec<[f64; 2]> = traced
         .joints
         .iter()
-        .map(|joint| polish([strands.get(joint.ends.0), strands.get(joint.begins.0)], [joint.ends.1, joint.begins.1]))
+        .map(|joint| {
+            let given = [joint.ends.1, joint.begins.1];
+            if joint.exact { given } else { polish([strands.get(joint.ends.0), strands.get(joint.begins.0)], given) }
+        })
         .collect();
     let mut loops: Vec<Loop> = traced
         .loops
@@ -79,7 +88,7 @@ fn polish(strands: [Option<&Stretch>; 2], given: [f64; 2]) -> [f64; 2] {
         tau = [tau[0] + a, tau[1] + b];
         let moved = (first.at(tau[0]).point - first.at(given[0]).point).norm()
             + (second.at(tau[1]).point - second.at(given[1]).point).norm();
-        if !(moved < POLISH) {
+        if moved.is_nan() || moved >= POLISH {
             break;
         }
         if gap(tau) <= gap(best) {
@@ -102,6 +111,8 @@ fn drafts(
     distance: f64,
 ) -> Vec<Draft> {
     let mut drafts: Vec<Draft> = Vec::new();
+    let first = traced_loop.fragments.first().and_then(|fragment| fragment.strands.first());
+    let origin = first.and_then(|&strand| strands.get(strand)).map_or(Complex::ZERO, |strand| strand.at(0.0).point);
     for fragment in &traced_loop.fragments {
         let count = fragment.strands.len();
         for (position, &number) in fragment.strands.iter().enumerate() {
@@ -115,7 +126,7 @@ fn drafts(
             let (Some(strand), Some(stretch)) = (traced.untrimmed.strands.get(number), strands.get(number)) else {
                 continue;
             };
-            let draft = draft(ground, strand.source, stretch, [from, to], distance);
+            let draft = draft(ground, strand.source, stretch, [from, to], distance, origin);
             match drafts.last_mut().filter(|last| position > 0 && goes_on(last, &draft)) {
                 Some(last) => {
                     last.to = draft.to;
@@ -155,11 +166,19 @@ fn place(along: &Along) -> (usize, f64) {
     }
 }
 
-/// A part of a strand, measured.
+/// A part of a strand, measured; areas are swept about `origin`.
 ///
 /// Length: integrating (13), the length on C plus d times the turn. Area: with p = r + d n, integrating p x p' by parts leaves
-/// the integral of r x r', a polynomial, 2 d times the length on C, d^2 times the turn, and d times r x n at both ends.
-fn draft(ground: &Ground, source: Source, stretch: &Stretch, [a, b]: [f64; 2], distance: f64) -> Draft {
+/// the integral of r x r', a polynomial, 2 d times the length on C, d^2 times the turn, and d times r x n at both ends. Where the
+/// tangent hardly turns, these cancel, and Gauss's rule on p x p' itself is as exact.
+fn draft(
+    ground: &Ground,
+    source: Source,
+    stretch: &Stretch,
+    [a, b]: [f64; 2],
+    distance: f64,
+    origin: Complex<f64>,
+) -> Draft {
     let (from, to) = (stretch.parameter(a).clamp(0.0, 1.0), stretch.parameter(b).clamp(0.0, 1.0));
     let (curve, d) = match source {
         Source::Segment(segment) => (ground.contour.segments.get(segment).copied(), distance),
@@ -167,24 +186,31 @@ fn draft(ground: &Ground, source: Source, stretch: &Stretch, [a, b]: [f64; 2], d
         Source::Border => (None, 0.0),
     };
     let Some(curve) = curve else { return Draft { source, from, to, length: 0.0, area: 0.0 } };
-    let [start, end] = [from, to].map(|xi| (curve.point(xi), curve.tangent(xi)));
+    let [start, end] = [from, to].map(|xi| (curve.point(xi) - origin, curve.tangent(xi)));
     let turn = (start.1.conj() * end.1).arg();
     let way = curve.length_to(to) - curve.length_to(from);
-    let swept: f64 = <f64 as Real>::GAUSS
-        .iter()
-        .map(|&(x, weight)| {
-            let xi = from + (to - from) * x;
-            weight * (to - from) * curve.point(xi).cross(curve.derivative(xi))
+    let integral = |function: &dyn Fn(f64) -> f64| -> f64 {
+        let width = to - from;
+        <f64 as Real>::GAUSS.iter().map(|&(x, weight)| weight * width * function(from + width * x)).sum()
+    };
+    let twice = if turn.abs() < STRAIGHT {
+        integral(&|xi| {
+            let forwards = curve.speed(xi) * (1.0 + curve.curvature(xi) * d);
+            (curve.offset_point(xi, d) - origin).cross(curve.tangent(xi)) * forwards
         })
-        .sum();
-    let normal = |(point, tangent): (Complex<f64>, Complex<f64>)| point.cross(tangent.right());
-    let area = 0.5 * (swept + 2.0 * d * way + d * d * turn + d * (normal(end) - normal(start)));
-    Draft { source, from, to, length: way + d * turn, area }
+    } else {
+        let normal = |(point, tangent): (Complex<f64>, Complex<f64>)| point.cross(tangent.right());
+        integral(&|xi| (curve.point(xi) - origin).cross(curve.derivative(xi)))
+            + 2.0 * d * way
+            + d * d * turn
+            + d * (normal(end) - normal(start))
+    };
+    Draft { source, from, to, length: way + d * turn, area: 0.5 * twice }
 }
 
 /// Turns drafts into a loop; none where nothing is left.
 fn finish(contour: &Contour, ground: &Ground, drafts: Vec<Draft>, closed: bool, distance: f64) -> Option<Loop> {
-    if drafts.is_empty() {
+    if drafts.iter().map(|draft| draft.length).sum::<f64>() < PLUNGE {
         return None;
     }
     let (mut length, mut area) = (0.0, 0.0);

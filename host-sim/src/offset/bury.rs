@@ -12,40 +12,48 @@ use super::trace::ROUNDING;
 /// How often a strand is halved.
 const HALVINGS: u32 = 2;
 
-/// The same strands, some of them halved, and for each whether anything of it may be kept.
-pub fn bury(ground: &Ground, untrimmed: Untrimmed, distance: f64) -> (Untrimmed, Vec<bool>) {
+/// What is known of a strand from its middle.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Cover {
+    /// Nothing of it can be kept.
+    Buried,
+    /// Its middle is covered, but what lies beside it may be kept.
+    Partly,
+    /// Its middle is to be kept.
+    Clear,
+}
+
+/// The same strands, some of them halved, and what covers each.
+pub fn bury(ground: &Ground, untrimmed: Untrimmed, distance: f64) -> (Untrimmed, Vec<Cover>) {
     let Untrimmed { strands, own } = untrimmed;
     let mut halved = Untrimmed { strands: Vec::with_capacity(strands.len()), own: 0 };
-    let mut alive = Vec::with_capacity(strands.len());
+    let mut covers = Vec::with_capacity(strands.len());
     for (number, strand) in strands.into_iter().enumerate() {
-        if number == own {
+        sift(ground, strand, distance, HALVINGS, &mut |strand: Strand, cover: Cover| {
+            halved.strands.push(strand);
+            covers.push(cover);
+        });
+        if number < own {
             halved.own = halved.strands.len();
         }
-        sift(ground, strand, distance, HALVINGS, &mut |strand: Strand, lives: bool| {
-            halved.strands.push(strand);
-            alive.push(lives);
-        });
     }
-    if halved.strands.len() > 0 && halved.own == 0 {
-        halved.own = halved.strands.len();
-    }
-    (halved, alive)
+    (halved, covers)
 }
 
 /// Keeps a strand, leaves it out, or looks at its halves.
-fn sift(ground: &Ground, strand: Strand, distance: f64, halvings: u32, keep: &mut impl FnMut(Strand, bool)) {
+fn sift(ground: &Ground, strand: Strand, distance: f64, halvings: u32, keep: &mut impl FnMut(Strand, Cover)) {
     let stretch = &strand.stretch;
     let middle = stretch.at(0.0).point;
     // Over a turn of 45 degrees an arc is less than 1.1 times as long as its chord.
     let way = 1.1 * (stretch.start() - middle).norm().max((stretch.end() - middle).norm());
     let limit = distance.abs() - ROUNDING;
-    let Some((_, foot)) = ground.field.nearest(middle, limit) else { return keep(strand, true) };
+    let Some((_, foot)) = ground.field.nearest(middle, limit) else { return keep(strand, Cover::Clear) };
     if foot.distance < limit - way {
-        return keep(strand, false);
+        return keep(strand, Cover::Buried);
     }
     match halves(ground, &strand, distance).filter(|_| halvings > 0) {
         Some(halves) => halves.into_iter().for_each(|half| sift(ground, half, distance, halvings - 1, keep)),
-        None => keep(strand, true),
+        None => keep(strand, Cover::Partly),
     }
 }
 

@@ -107,7 +107,7 @@ impl<'a> Pair<'a> {
         let (a0, a1) = (along(a, -0.5), along(a, 0.5));
         let (b0, b1) = (along(b, -0.5 * self.sense), along(b, 0.5 * self.sense));
         let (from, to) = (a0.max(b0), a1.min(b1));
-        if !(from < to) {
+        if from.is_nan() || to.is_nan() || from >= to {
             return None;
         }
         let ends = [-0.5, 0.5];

@@ -27,15 +27,18 @@ pub struct Ground {
     pub segment_of: Vec<usize>,
     middle: Complex<f64>,
     scale: f64,
+    /// The frame's turn against the contour's own axes.
+    turn: Complex<f64>,
 }
 
 impl Ground {
-    /// Checks a contour for offsets up to |`distance`|, in mm. Errors: a cusp, a node that turns back.
-    pub fn new(contour: &Contour, distance: f64) -> Result<Self, OffsetError> {
+    /// Checks a contour for offsets up to |`distance`|, in mm, and turns its frame by `angle`, in radians. Errors: a cusp, a node that turns back.
+    pub fn new(contour: &Contour, distance: f64, angle: f64) -> Result<Self, OffsetError> {
         let [low, high] = contour.extent();
         let middle = (low + high) * 0.5;
         let scale = 1.0 / (high - low).norm().max(distance.abs());
-        let segments: Vec<Segment<f64>> = contour.segments.iter().map(|s| framed(s, middle, scale)).collect();
+        let turn = Complex::new(angle.cos(), angle.sin());
+        let segments: Vec<Segment<f64>> = contour.segments.iter().map(|s| framed(s, middle, scale, turn)).collect();
         for (segment, curve) in contour.segments.iter().enumerate() {
             if let Segment::Ph(curve) = curve
                 && has_cusp(curve)
@@ -60,7 +63,7 @@ impl Ground {
                 }
             }
         }
-        Ok(Self { contour, cuts, field: Field::new(stretches), segment_of, middle, scale })
+        Ok(Self { contour, cuts, field: Field::new(stretches), segment_of, middle, scale, turn })
     }
 
     /// A length in mm in this frame's unit.
@@ -75,7 +78,7 @@ impl Ground {
 
     /// A point of this frame in mm.
     pub fn place(&self, point: Complex<f64>) -> Complex<f64> {
-        point * (1.0 / self.scale) + self.middle
+        point * self.turn.conj() * (1.0 / self.scale) + self.middle
     }
 
     /// How far the contour is from meeting at a node.
@@ -112,18 +115,17 @@ impl Ground {
     }
 }
 
-/// The segment with `middle` at the origin and `scale` times its size; parameters stay.
-fn framed(segment: &Segment<f64>, middle: Complex<f64>, scale: f64) -> Segment<f64> {
+/// The segment with `middle` at the origin, turned, and `scale` times its size; parameters stay.
+fn framed(segment: &Segment<f64>, middle: Complex<f64>, scale: f64, turn: Complex<f64>) -> Segment<f64> {
+    let place = |point: Complex<f64>| (point - middle) * turn * scale;
     match *segment {
         Segment::Ph(PhQuintic { start, w }) => {
-            let root = scale.sqrt();
-            Segment::Ph(PhQuintic { start: (start - middle) * scale, w: w.map(|w| w * root) })
+            let root = turn.sqrt() * scale.sqrt();
+            Segment::Ph(PhQuintic { start: place(start), w: w.map(|w| w * root) })
         }
-        Segment::Line(Line { start, end }) => {
-            Segment::Line(Line { start: (start - middle) * scale, end: (end - middle) * scale })
-        }
+        Segment::Line(Line { start, end }) => Segment::Line(Line { start: place(start), end: place(end) }),
         Segment::Arc(Arc { start, radius, sweep }) => {
-            Segment::Arc(Arc { start: (start - middle) * scale, radius: radius * scale, sweep })
+            Segment::Arc(Arc { start: place(start), radius: radius * turn * scale, sweep })
         }
     }
 }
@@ -135,5 +137,5 @@ fn has_cusp(curve: &PhQuintic<f64>) -> bool {
     let sigma = curve.speed_coefficients();
     let slope = [0, 1, 2, 3].map(|k| sigma[k + 1] - sigma[k]);
     let places = super::roots::zeros(slope).into_iter().chain([0.0, 1.0]);
-    places.map(|xi| curve.speed(xi)).any(|speed| !(speed > SLOWEST * SLOWEST * fastest))
+    places.map(|xi| curve.speed(xi)).any(|speed| speed.is_nan() || speed <= SLOWEST * SLOWEST * fastest)
 }

@@ -1,8 +1,44 @@
 //! The exact trimmed offset of any contour: the path of a tool's centre that touches the part and never cuts into it.
+//!
+//! Nothing is made of small lines. Every piece of the result is a part of a segment of the contour at the distance d, or of the arc
+//! about a node; what is computed is where it begins and ends.
+//!
+//! <div style="max-width: 32rem">
+#![doc = include_str!("../../../docs/trimming.svg")]
+//! </div>
+//!
+//! `hodograph offset examples/farouki2018.toml --svg docs/trimming.svg` draws this picture.
+//!
+//! # How trimming works
+//!
+//! 1. `ground`: the contour is moved and scaled into a frame in which it has size 1, and cut into *stretches* (`stretch`) along which
+//!    the tangent turns one way by at most 45 degrees and the curvature grows or falls all the way. All certainty below comes from
+//!    that. They go into a spatial index (`field`). A contour that crosses itself is found here.
+//! 2. `strand`: the untrimmed offset in *strands*, the stretches of it that run forwards: 1 + kappa d > 0. Where it runs backwards,
+//!    kappa < -1/d, nothing can ever be kept; cutting there takes the trivial root away from every equation that follows. Convex
+//!    nodes are filled by arcs about the node, concave ones leave two ends that pass each other (equation (3)).
+//! 3. `bury`: a strand whose middle is nearer to C than |d|, by more than the way to its ends, is left out.
+//! 4. `crossing`: all crossings of the strands that are left. Two strands are graphs over a common axis, and their slopes at the ends of
+//!    a part bound them in between, so crossings are counted with certainty and made exact by Newton's method; the touching of two
+//!    strands whose gap is 1e-13 of the contour's size is told from their crossing. What is flatter than that is joined by `close`.
+//! 5. `trace`: at a crossing one strand passes into the reach of the other. So a fragment is kept if it begins where its strand comes
+//!    out, ends where it passes in, and is not covered by anything else, which its distance from C tells (`foot`). At each crossing
+//!    exactly one kept fragment ends and one begins: they join to loops by themselves. If they do not, or if a clear strand is part
+//!    of no loop, something fell within rounding, and d is changed by some 1e-11 of itself, the frame is turned, and it all is done
+//!    again.
+//! 6. `assemble`: trim points are made exact at d; lengths and areas in closed form, turning angles, nesting (`nesting`).
+//!
+//! With a tree at every step the cost grows as n log n with the number of segments, and with the number of crossings (measured by
+//! `cargo bench -p host-sim --bench offset`).
+//!
+//! What is lost and what would fit is told by discs that touch C from the tool's side (`reach`) and by the distance of C from the
+//! finished path (`undercut`). [`crate::measure::clearance`] measures a result again without any of this code.
 
 mod assemble;
 mod bury;
+mod close;
 mod crossing;
+mod error;
 mod field;
 mod foot;
 mod ground;
@@ -14,8 +50,6 @@ mod stretch;
 mod trace;
 mod undercut;
 
-use std::fmt;
-
 use serde::Serialize;
 use shared::complex::Complex;
 
@@ -24,6 +58,7 @@ use reach::Reach;
 use trace::trace;
 
 pub use crate::contour::{Along, Contour};
+pub use error::OffsetError;
 
 /// The trimmed offset: all points of the untrimmed one that are nowhere nearer to C than |d|.
 #[derive(Clone, Debug, PartialEq)]
@@ -80,83 +115,67 @@ pub struct Undercut {
     pub deepest: Complex<f64>,
 }
 
-/// Why there is no trimmed offset.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum OffsetError {
-    /// The distance is zero or not a number.
-    Distance,
-    /// The contour crosses itself.
-    Crossing {
-        /// The segments that cross.
-        segments: [usize; 2],
-        /// Where, in mm.
-        at: Complex<f64>,
-    },
-    /// A segment stands still and turns back inside itself: its parametric speed vanishes.
-    Cusp {
-        /// Its number.
-        segment: usize,
-    },
-    /// At a node the contour goes back the way it came.
-    Reversal {
-        /// The node at the end of the segment of this number.
-        node: usize,
-    },
-    /// Nothing of the offset is left.
-    Empty {
-        /// The largest |d| on this side that would leave a path, in mm.
-        largest: f64,
-    },
-    /// Pieces were found that do not join to loops, at every one of a few distances within 1e-9 of the given one.
-    Degenerate,
-}
+/// How often another |d| and another turn of the frame are tried where pieces do not join, or where some are missing.
+const ATTEMPTS: u32 = 32;
 
-impl fmt::Display for OffsetError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{self:?}")
-    }
-}
-
-impl std::error::Error for OffsetError {}
-
-/// By how much |d| is changed, relatively, to find which pieces there are; one after the other until they join.
+/// By how much |d| is changed, relatively, to find which pieces there are, and by how much the frame is turned, in radians.
 ///
 /// A tool that just fits a slot, a node that falls on a trim point, three walls at one distance: exactly at d such a thing can be
-/// decided neither way, a little beside it it can. The first one is a little smaller, so that a tool that just fits does fit.
-/// Trim points are made exact at d afterwards, and no clearance falls short of |d| by more than this.
-const NUDGES: [f64; 8] = [-1e-11, -3.1e-11, 1.7e-11, -7.3e-11, 5.3e-11, -1.9e-10, 2.3e-10, -6.1e-10];
+/// decided neither way, a little beside it it can. The first change is to a little less, so that a tool that just fits does fit.
+/// Trim points are made exact at d afterwards, and no clearance falls short of |d| by more than 6.4e-10 of it. Turning, by the
+/// golden angle, lets rounding fall differently.
+fn attempt(number: u32) -> (f64, f64) {
+    let side = if number.is_multiple_of(2) { -1.0 } else { 1.0 };
+    let number = f64::from(number);
+    (side * 1e-11 * (1.0 + 1.97 * number), 2.399_963_229_728_653 * number)
+}
 
 /// The trimmed offset of `contour` at the signed `distance` in mm.
 pub fn trim(contour: &Contour, distance: f64) -> Result<Offset, OffsetError> {
     if !(distance != 0.0 && distance.is_finite()) {
         return Err(OffsetError::Distance);
     }
-    let ground = Ground::new(contour, distance)?;
+    let mut ground = Ground::new(contour, distance, 0.0)?;
     ground.check_simple()?;
     let exact = ground.to_frame(distance);
-    for nudge in NUDGES {
-        let Ok(traced) = trace(&ground, exact * (1.0 + nudge)) else { continue };
-        let loops = assemble::loops(contour, &ground, &traced, distance);
-        if loops.is_empty() {
-            return Err(OffsetError::Empty { largest: largest_fitting(contour, distance) });
+    let mut best: Option<(usize, Vec<Loop>)> = None;
+    for number in 0..ATTEMPTS {
+        let (nudge, angle) = attempt(number);
+        if number > 0 {
+            ground = Ground::new(contour, distance, angle)?;
         }
-        return Ok(Offset { distance, loops });
+        let Ok(traced) = trace(&ground, exact * (1.0 + nudge)) else { continue };
+        if best.as_ref().is_none_or(|&(lost, _)| traced.lost < lost) {
+            best = Some((traced.lost, assemble::loops(contour, &ground, &traced, distance)));
+        }
+        if traced.lost == 0 {
+            break;
+        }
     }
-    Err(OffsetError::Degenerate)
+    match best {
+        Some((_, loops)) if !loops.is_empty() => Ok(Offset { distance, loops }),
+        Some(_) => {
+            // The discs are good to 1e-7; that this one does not fit is certain.
+            let largest = largest_fitting(contour, distance).min(distance.abs() * (1.0 - 1e-9));
+            Err(OffsetError::Empty { largest })
+        }
+        None => Err(OffsetError::Degenerate),
+    }
 }
 
 /// Where the tool of `offset` leaves material on `contour`, in order along C.
 pub fn undercuts(contour: &Contour, offset: &Offset) -> Vec<Undercut> {
-    Ground::new(contour, offset.distance).map_or_else(|_| Vec::new(), |ground| undercut::undercuts(&ground, offset))
+    Ground::new(contour, offset.distance, 0.0)
+        .map_or_else(|_| Vec::new(), |ground| undercut::undercuts(&ground, offset))
 }
 
 /// The radius of the largest tool that reaches every point of `contour` from the side of `side`'s sign (positive: right of
 /// travel), in mm; 0 where a sharp concave corner keeps every tool out, infinite where none is too large. Good to 1e-7 of itself.
 pub fn largest_reaching(contour: &Contour, side: f64) -> f64 {
-    Ground::new(contour, 0.0).map_or(0.0, |ground| ground.to_mm(Reach::new(&ground, side).everywhere()))
+    Ground::new(contour, 0.0, 0.0).map_or(0.0, |ground| ground.to_mm(Reach::new(&ground, side).everywhere()))
 }
 
 /// The radius of the largest tool that touches any point of `contour` from that side, in mm; infinite where none is too large.
 pub fn largest_fitting(contour: &Contour, side: f64) -> f64 {
-    Ground::new(contour, 0.0).map_or(0.0, |ground| ground.to_mm(Reach::new(&ground, side).anywhere()))
+    Ground::new(contour, 0.0, 0.0).map_or(0.0, |ground| ground.to_mm(Reach::new(&ground, side).anywhere()))
 }

@@ -5,12 +5,12 @@ use shared::curve::{Curve as _, Segment};
 
 use super::{Contour, Loop};
 
-/// Fills in [`Loop::parent`] and [`Loop::depth`]: a loop lies inside those that wind around its first point.
+/// Fills in [`Loop::parent`] and [`Loop::depth`]: a loop lies inside those that wind around a point of it.
 pub fn nest(contour: &Contour, distance: f64, loops: &mut [Loop]) {
     let boxes: Vec<[Complex<f64>; 2]> = loops.iter().map(|l| around(contour, distance, l)).collect();
+    let places: Vec<Option<Complex<f64>>> = loops.iter().map(|l| inmost(contour, distance, l)).collect();
     let inside = |inner: usize, outer: usize| {
-        let (Some(a), Some(b)) = (loops.get(inner), loops.get(outer)) else { return false };
-        let Some(point) = a.pieces.first().map(|piece| piece.start) else { return false };
+        let (Some(Some(point)), Some(b)) = (places.get(inner).copied(), loops.get(outer)) else { return false };
         let holds = boxes.get(outer).is_some_and(|[low, high]| {
             point.re >= low.re && point.re <= high.re && point.im >= low.im && point.im <= high.im
         });
@@ -27,6 +27,14 @@ pub fn nest(contour: &Contour, distance: f64, loops: &mut [Loop]) {
             area(a).total_cmp(&area(b))
         });
     }
+}
+
+/// The middle of a loop's longest piece: where it is farthest from places at which other loops may touch it.
+fn inmost(contour: &Contour, distance: f64, l: &Loop) -> Option<Complex<f64>> {
+    let long = |piece: &&super::Piece| (piece.end - piece.start).norm();
+    let piece = l.pieces.iter().max_by(|a, b| long(a).total_cmp(&long(b)))?;
+    let (curve, [from, to], d) = contour.carrier(piece.along, distance)?;
+    Some(curve.offset_point(0.5 * (from + to), d))
 }
 
 /// A box around a loop.

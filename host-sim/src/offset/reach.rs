@@ -6,17 +6,25 @@
 use super::ground::Ground;
 use super::strand::{Source, Strand, Untrimmed};
 use super::stretch::Stretch;
-use super::trace::{End, trace};
+use super::trace::{End, Traced, interval, trace};
 use super::undercut::golden;
 
-/// A disc larger than this, in the unit of the frame, is not bounded by C.
-const UNBOUNDED: f64 = 1e4;
+/// Discs larger than this, in the unit of the frame, are bounded by the curvature of C alone: a point of C as far away as the
+/// contour is large would lie in one by less than rounding can tell.
+const UNBOUNDED: f64 = 200.0;
 
 /// A distance so small that the offset at it is the contour itself, with all of its convex nodes opened to arcs.
 const GRAZING: f64 = 1e-7;
 
-/// Places on each strand at which discs are tried before the best ones are narrowed down.
-const TRIES: [f64; 5] = [-0.5, -0.25, 0.0, 0.25, 0.5];
+/// Places on each strand at which discs are tried before the best ones are narrowed down, and how far apart they are.
+const TRIES: [f64; 9] = [-0.5, -0.375, -0.25, -0.125, 0.0, 0.125, 0.25, 0.375, 0.5];
+const APART: f64 = 0.125;
+
+/// How often the trimming is asked whether a disc is the extreme one.
+const ROUNDS: u32 = 16;
+
+/// How many strands the largest disc is narrowed down on.
+const NARROWED: usize = 64;
 
 /// A node that turns away from the tool by more than this, in radians, keeps every tool out.
 const SHARP: f64 = 1e-9;
@@ -47,14 +55,14 @@ impl<'a> Reach<'a> {
         }
         // The curvature is extreme at the ends of stretches.
         let bends = self.ground.field.stretches().iter().flat_map(|s| [-0.5, 0.5].map(|tau| self.bend(s, tau)));
-        let mut least = bends.fold(UNBOUNDED, f64::min);
+        let mut least = bends.fold(f64::INFINITY, f64::min);
         for strand in &self.strands {
             for tau in TRIES {
                 least = self.narrow(strand, tau, least);
             }
         }
         // What the trials have missed, the trimming finds: a tool a little smaller must lose nothing.
-        for _ in 0..8 {
+        for _ in 0..ROUNDS {
             let Some((strand, tau)) = self.lost(least * (1.0 - 1e-8)) else { break };
             let better = self.narrow(&strand, tau, least);
             if better >= least {
@@ -62,24 +70,38 @@ impl<'a> Reach<'a> {
             }
             least = better;
         }
-        if least >= UNBOUNDED { f64::INFINITY } else { least }
+        least
     }
 
     /// The radius of the largest tool that touches any point, in the frame's unit; infinite where none is too large.
     pub fn anywhere(&self) -> f64 {
-        let mut tried: Vec<(f64, &Strand, f64)> = Vec::new();
-        for strand in &self.strands {
-            for tau in TRIES {
-                tried.push((self.disc(strand, tau, UNBOUNDED), strand, tau));
+        let best = |strand: &'_ Strand| {
+            let tried = TRIES.map(|tau| (self.disc(strand, tau, UNBOUNDED), tau));
+            tried.into_iter().fold((0.0, 0.0), |best, tried| if tried.0 > best.0 { tried } else { best })
+        };
+        let mut tried: Vec<((f64, f64), &Strand)> = self.strands.iter().map(|s| (best(s), s)).collect();
+        tried.sort_by(|a, b| b.0.0.total_cmp(&a.0.0));
+        // All along an arc that a disc fills it is the same one.
+        tried.dedup_by(|b, a| (a.0.0 - b.0.0).abs() < 1e-9);
+        let narrowed = tried.iter().take(NARROWED).map(|&((_, tau), strand)| self.widen(strand, tau));
+        let mut greatest = narrowed.fold(0.0, f64::max);
+        // What the trials have missed, the trimming finds: of a tool a little larger nothing must be left.
+        for _ in 0..ROUNDS {
+            let Some((strand, tau)) = self.left(greatest * (1.0 + 1e-8)) else { break };
+            let better = self.widen(&strand, tau);
+            if better <= greatest {
+                break;
             }
+            greatest = better;
         }
-        tried.sort_by(|a, b| b.0.total_cmp(&a.0));
-        let narrowed = tried.iter().take(12).map(|&(radius, strand, tau)| {
-            let tau = golden(|tau| -self.disc(strand, tau, UNBOUNDED), (tau - 0.25).max(-0.5), (tau + 0.25).min(0.5));
-            self.disc(strand, tau, UNBOUNDED).max(radius)
-        });
-        let greatest = narrowed.fold(0.0, f64::max);
-        if greatest >= 0.99 * UNBOUNDED { f64::INFINITY } else { greatest }
+        if greatest >= UNBOUNDED { f64::INFINITY } else { greatest }
+    }
+
+    /// The greatest disc near a place.
+    fn widen(&self, strand: &Strand, tau: f64) -> f64 {
+        let disc = |tau: f64| self.disc(strand, tau, UNBOUNDED);
+        let place = golden(|tau| -disc(tau), (tau - APART).max(-0.5), (tau + APART).min(0.5));
+        disc(place).max(disc(tau))
     }
 
     /// The least disc near a place, if it is less than `least`; else that.
@@ -88,11 +110,11 @@ impl<'a> Reach<'a> {
         if here >= least {
             return least;
         }
-        let place = golden(|tau| self.disc(strand, tau, least), (tau - 0.25).max(-0.5), (tau + 0.25).min(0.5));
+        let place = golden(|tau| self.disc(strand, tau, least), (tau - APART).max(-0.5), (tau + APART).min(0.5));
         self.disc(strand, place, least).min(here)
     }
 
-    /// The radius of the largest tangent disc at a place that C bounds, or `most` if it is no less.
+    /// The radius of the largest tangent disc at a place that C bounds, or the least of `most` and [`UNBOUNDED`] if it is no less.
     ///
     /// A disc that holds a point of C shrinks until it touches that point, [Ma, Bae & Choi 2012]; each round is one look-up.
     fn disc(&self, strand: &Strand, tau: f64, most: f64) -> f64 {
@@ -100,12 +122,12 @@ impl<'a> Reach<'a> {
         let normal = at.tangent.right() * self.side;
         let point = at.point - normal * GRAZING;
         let mut radius = match strand.source {
-            Source::Segment(_) => most.min(self.bend(&strand.stretch.with_offset(0.0), tau)),
-            _ => most,
+            Source::Segment(_) => most.min(UNBOUNDED).min(self.bend(&strand.stretch.with_offset(0.0), tau)),
+            _ => most.min(UNBOUNDED),
         };
         for _ in 0..64 {
             let centre = point + normal * radius;
-            let Some((number, foot)) = self.ground.field.nearest(centre, radius * (1.0 - 1e-11)) else { break };
+            let Some((number, foot)) = self.ground.field.nearest(centre, radius * (1.0 - 1e-13)) else { break };
             let Some(other) = self.ground.field.stretches().get(number) else { break };
             let chord = other.at(foot.tau).point - point;
             let less = chord.norm_sqr() / (2.0 * normal.dot(chord));
@@ -123,22 +145,36 @@ impl<'a> Reach<'a> {
         if curvature > 0.0 { 1.0 / curvature } else { f64::INFINITY }
     }
 
+    /// The trimmed offset of a tool, if it is not so large that only the curvature bounds it.
+    fn traced(&self, radius: f64) -> Option<Traced> {
+        (radius > 0.0 && radius < 0.5 * UNBOUNDED).then(|| trace(self.ground, self.side * radius).ok()).flatten()
+    }
+
     /// A place that a tool of this radius does not touch.
     fn lost(&self, radius: f64) -> Option<(Strand, f64)> {
-        if !(radius > 0.0 && radius < 0.5 * UNBOUNDED) {
-            return None;
-        }
-        let traced = trace(self.ground, self.side * radius).ok()?;
+        let traced = self.traced(radius)?;
         let trimmed = traced.loops.iter().flat_map(|l| &l.fragments).find_map(|fragment| match fragment.end {
             End::Joint(joint) => traced.joints.get(joint).copied(),
             End::Free => None,
         })?;
         // Just behind the place where the tool turns off C begins what it does not touch.
         let (number, tau) = trimmed.ends;
-        let strand = traced.untrimmed.strands.get(number)?;
-        let beyond = strand.stretch.parameter((tau + 1e-3).min(0.5));
-        let same = |s: &&Strand| s.source == strand.source && s.stretch.from <= beyond && beyond <= s.stretch.to;
+        self.place(traced.untrimmed.strands.get(number)?, (tau + 1e-3).min(0.5))
+    }
+
+    /// A place that a tool of this radius touches.
+    fn left(&self, radius: f64) -> Option<(Strand, f64)> {
+        let traced = self.traced(radius)?;
+        let fragment = traced.loops.iter().flat_map(|l| &l.fragments).next()?;
+        let [from, to] = interval(fragment, &traced.joints, 0);
+        self.place(traced.untrimmed.strands.get(*fragment.strands.first()?)?, 0.5 * (from + to))
+    }
+
+    /// The same place on the strands of this side.
+    fn place(&self, strand: &Strand, tau: f64) -> Option<(Strand, f64)> {
+        let at = strand.stretch.parameter(tau);
+        let same = |s: &&Strand| s.source == strand.source && s.stretch.from <= at && at <= s.stretch.to;
         let found = self.strands.iter().find(same)?;
-        Some((*found, (beyond - found.stretch.from) / (found.stretch.to - found.stretch.from) - 0.5))
+        Some((*found, (at - found.stretch.from) / (found.stretch.to - found.stretch.from) - 0.5))
     }
 }

@@ -1,6 +1,6 @@
 //! The untrimmed offset in strands: the stretches of it that run forwards, and the arcs that fill the gaps at convex nodes.
 
-use std::f64::consts::{FRAC_PI_2, PI};
+use std::f64::consts::PI;
 
 use shared::complex::Complex;
 use shared::curve::{Arc, Curve as _, Segment};
@@ -8,9 +8,12 @@ use shared::curve::{Arc, Curve as _, Segment};
 use super::ground::Ground;
 use super::stretch::{Stretch, TURN, cusps};
 
-/// Ends of strands that follow each other along C and are nearer than this to each other, in the unit of the frame, are joined:
-/// smooth nodes, and loops too small to be seen.
+/// Ends of strands that follow each other along C and are nearer to each other than this part of |d| are joined: smooth nodes, and
+/// loops too small to be seen. Half of it may be lacking from the clearance there.
 const JOINED: f64 = 1e-10;
+
+/// Strands of the half circle about an end of an open contour.
+const CAP: usize = (PI / TURN) as usize;
 
 /// What a strand runs along.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -70,11 +73,14 @@ impl Untrimmed {
         if !self.is_border(b) {
             return a + 1 == b && follows(b) || a == 0 && b + 1 == self.own && follows(0);
         }
-        // The caps begin and end where an open offset does.
-        const TOUCH: f64 = 1e-9;
+        // The cap about the start of C begins or ends where the first strand starts, that about its end where the last one ends.
+        const TOUCH: f64 = 1e-12;
+        let behind = self.strands.len() - b;
         let (Some(one), Some(cap)) = (self.strands.get(a), self.strands.get(b)) else { return false };
-        let touch = |p: &Strand, q: &Strand| (p.stretch.end() - q.stretch.start()).norm() < TOUCH;
-        (a == 0 || a + 1 == self.own) && (touch(one, cap) || touch(cap, one))
+        let touches =
+            |p| [cap.stretch.start(), cap.stretch.end()].into_iter().any(|q: Complex<f64>| (q - p).norm() < TOUCH);
+        a == 0 && (CAP + 1..=2 * CAP).contains(&behind) && touches(one.stretch.start())
+            || a + 1 == self.own && behind <= CAP && touches(one.stretch.end())
     }
 }
 
@@ -82,9 +88,10 @@ impl Untrimmed {
 fn side(ground: &Ground, distance: f64) -> Vec<Strand> {
     let contour = &ground.contour;
     let mut strands: Vec<Strand> = Vec::new();
+    let near = (JOINED * distance.abs()).max(1e-15);
     let mut push = |source: Source, stretch: Stretch, gap: f64| {
-        let before = strands.last().map(|strand: &Strand| strand.stretch.end());
-        let follows = before.is_some_and(|end| joined(&stretch, end, gap));
+        let follows =
+            strands.last().is_some_and(|before: &Strand| follows(&before.stretch, &stretch, near + 2.0 * gap));
         strands.push(Strand { source, stretch, follows, left: distance > 0.0 });
     };
     let mut gap = 0.0;
@@ -106,23 +113,23 @@ fn side(ground: &Ground, distance: f64) -> Vec<Strand> {
         }
         gap = ground.gap(number);
         if let Some(arc) = contour.fill_arc(number, distance)
-            && arc.sweep * distance > JOINED
+            && arc.sweep * distance > near
         {
             fill(arc).for_each(|stretch| push(Source::Fill(number), stretch, 0.0));
         }
     }
-    // The first one follows the last one around a closed contour, if they meet.
-    if let (true, Some(end)) = (contour.closed, strands.last().map(|last| last.stretch.end()))
+    // The first one follows the last one around a closed contour.
+    if let (true, Some(last)) = (contour.closed, strands.last().copied())
         && let Some(first) = strands.first_mut()
     {
-        first.follows = joined(&first.stretch, end, gap);
+        first.follows = follows(&last.stretch, &first.stretch, near + 2.0 * gap);
     }
     strands
 }
 
-/// Whether a stretch begins at `end`, as well as the contour meets there.
-fn joined(stretch: &Stretch, end: Complex<f64>, gap: f64) -> bool {
-    (stretch.start() - end).norm() < JOINED + 2.0 * gap
+/// Whether one stretch begins where the one before it ends.
+fn follows(before: &Stretch, stretch: &Stretch, near: f64) -> bool {
+    (stretch.start() - before.end()).norm() < near
 }
 
 /// A fill arc in stretches.
@@ -132,7 +139,7 @@ pub fn fill(arc: Arc<f64>) -> impl Iterator<Item = Stretch> {
     (0..parts as usize).map(move |k| Stretch::new(&segment, k as f64 / parts, (k + 1) as f64 / parts, 0.0))
 }
 
-/// Half circles about both ends of an open contour.
+/// Half circles about both ends of an open contour, [`CAP`] strands each.
 fn caps(ground: &Ground, radius: f64) -> Vec<Strand> {
     let contour = &ground.contour;
     let ends = contour.segments.first().map(|s| (s.point(0.0), s.tangent(0.0).left())).into_iter();
@@ -141,6 +148,5 @@ fn caps(ground: &Ground, radius: f64) -> Vec<Strand> {
         let radius = side * radius;
         fill(Arc { start: centre + radius, radius, sweep: PI })
     });
-    debug_assert!(TURN <= FRAC_PI_2);
     halves.map(|stretch| Strand { source: Source::Border, stretch, follows: false, left: true }).collect()
 }

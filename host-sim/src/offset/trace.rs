@@ -5,9 +5,10 @@
 //! passes in; whether something else covers it is decided in its middle, far from the crossings, where the distance from C
 //! tells clearly.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
-use super::bury::bury;
+use super::bury::{Cover, bury};
+use super::close::close;
 use super::crossing::{Crossing, crossings};
 use super::field::Field;
 use super::ground::Ground;
@@ -25,6 +26,8 @@ pub struct Traced {
     pub joints: Vec<Joint>,
     /// Runs of fragments, each beginning where the one before it ends.
     pub loops: Vec<TracedLoop>,
+    /// How many strands are to be kept as far as their middles tell, but are part of no fragment: a crossing was not seen.
+    pub lost: usize,
 }
 
 /// Where two strands cross.
@@ -34,6 +37,8 @@ pub struct Joint {
     pub ends: (usize, f64),
     /// The strand that it goes on along.
     pub begins: (usize, f64),
+    /// Whether Newton's method could only spoil it.
+    pub exact: bool,
 }
 
 /// A run of fragments.
@@ -80,20 +85,22 @@ struct Event {
 
 /// The trimmed offset at `distance`, in the frame of `ground`. Errors: what is found does not join to loops.
 pub fn trace(ground: &Ground, distance: f64) -> Result<Traced, Undecided> {
-    let (untrimmed, alive) = bury(ground, Untrimmed::new(ground, distance), distance);
+    let (untrimmed, covers) = bury(ground, Untrimmed::new(ground, distance), distance);
     let limit = distance.abs();
-    let (joints, events) = meet(&untrimmed, &alive);
-    let tracer = Tracer { ground, untrimmed: &untrimmed, alive: &alive, joints: &joints, events: &events, limit };
+    let (joints, events) = meet(&untrimmed, &covers, close(ground, &untrimmed, &covers, limit));
+    let tracer = Tracer { ground, untrimmed: &untrimmed, covers: &covers, joints: &joints, events: &events, limit };
     let fragments: Vec<Fragment> =
         tracer.candidates().into_iter().filter(|fragment| tracer.is_clear(fragment)).collect();
+    let lost = tracer.lost(&fragments);
     let loops = chain(fragments, &joints, &untrimmed)?;
-    Ok(Traced { untrimmed, joints, loops })
+    Ok(Traced { untrimmed, joints, loops, lost })
 }
 
 /// All crossings of strands that are not buried.
-fn meet(untrimmed: &Untrimmed, alive: &[bool]) -> (Vec<Joint>, Vec<Vec<Event>>) {
+fn meet(untrimmed: &Untrimmed, covers: &[Cover], close: Vec<Joint>) -> (Vec<Joint>, Vec<Vec<Event>>) {
     let strands = &untrimmed.strands;
-    let numbers: Vec<usize> = alive.iter().enumerate().filter(|(_, alive)| **alive).map(|(k, _)| k).collect();
+    let numbers: Vec<usize> =
+        (0..strands.len()).filter(|&k| covers.get(k).is_some_and(|cover| *cover != Cover::Buried)).collect();
     let field = Field::new(numbers.iter().filter_map(|&k| Some(strands.get(k)?.stretch)).collect());
     let mut joints = Vec::new();
     let mut events: Vec<Vec<Event>> = vec![Vec::new(); strands.len()];
@@ -101,7 +108,8 @@ fn meet(untrimmed: &Untrimmed, alive: &[bool]) -> (Vec<Joint>, Vec<Vec<Event>>) 
     field.pairs(|i, j| {
         let [Some(&a), Some(&b)] = [i, j].map(|k| numbers.get(k)) else { return };
         let [Some(first), Some(second)] = [a, b].map(|k| strands.get(k)) else { return };
-        if untrimmed.is_border(a) || untrimmed.neighbours(a, b) {
+        let joined = |joint: &Joint| [(a, b), (b, a)].contains(&(joint.ends.0, joint.begins.0));
+        if untrimmed.is_border(a) || untrimmed.neighbours(a, b) || close.iter().any(joined) {
             return;
         }
         found.clear();
@@ -113,9 +121,9 @@ fn meet(untrimmed: &Untrimmed, alive: &[bool]) -> (Vec<Joint>, Vec<Vec<Event>>) 
             let joint = joints.len();
             let sides = [(a, xi), (b, eta)];
             joints.push(if into {
-                Joint { ends: sides[0], begins: sides[1] }
+                Joint { ends: sides[0], begins: sides[1], exact: false }
             } else {
-                Joint { ends: sides[1], begins: sides[0] }
+                Joint { ends: sides[1], begins: sides[0], exact: false }
             });
             for (side, (strand, tau)) in sides.into_iter().enumerate() {
                 if let Some(events) = events.get_mut(strand) {
@@ -124,6 +132,14 @@ fn meet(untrimmed: &Untrimmed, alive: &[bool]) -> (Vec<Joint>, Vec<Vec<Event>>) 
             }
         }
     });
+    for joint in close {
+        for ((strand, tau), begins) in [(joint.ends, false), (joint.begins, true)] {
+            if let Some(events) = events.get_mut(strand) {
+                events.push(Event { tau, joint: joints.len(), begins });
+            }
+        }
+        joints.push(joint);
+    }
     for events in &mut events {
         events.sort_by(|a, b| a.tau.total_cmp(&b.tau));
     }
@@ -133,7 +149,7 @@ fn meet(untrimmed: &Untrimmed, alive: &[bool]) -> (Vec<Joint>, Vec<Vec<Event>>) 
 struct Tracer<'a> {
     ground: &'a Ground,
     untrimmed: &'a Untrimmed,
-    alive: &'a [bool],
+    covers: &'a [Cover],
     joints: &'a [Joint],
     events: &'a [Vec<Event>],
     limit: f64,
@@ -142,7 +158,7 @@ struct Tracer<'a> {
 impl Tracer<'_> {
     /// Strands that follow each other, as long as none is buried; and whether such a run is a ring.
     fn runs(&self) -> Vec<(Vec<usize>, bool)> {
-        let alive = |k: usize| self.alive.get(k).is_some_and(|alive| *alive);
+        let alive = |k: usize| self.covers.get(k).is_some_and(|cover| *cover != Cover::Buried);
         let mut runs: Vec<Vec<usize>> = Vec::new();
         for (k, strand) in self.untrimmed.strands.iter().enumerate().take(self.untrimmed.own) {
             if !alive(k) {
@@ -212,6 +228,18 @@ impl Tracer<'_> {
             }
         }
         fragments
+    }
+
+    /// How many clear strands are part of no fragment; those count that are longer than what rounding may take from them.
+    fn lost(&self, fragments: &[Fragment]) -> usize {
+        const LONG: f64 = 1e-7;
+        let kept: HashSet<usize> = fragments.iter().flat_map(|fragment| fragment.strands.iter().copied()).collect();
+        let strands = self.untrimmed.strands.iter().zip(self.covers).take(self.untrimmed.own).enumerate();
+        let lost = strands.filter(|(number, (strand, cover))| {
+            let long = (strand.stretch.start() - strand.stretch.end()).norm() > LONG;
+            **cover == Cover::Clear && long && !kept.contains(number)
+        });
+        lost.count()
     }
 
     /// The interval of a fragment on one of its strands.

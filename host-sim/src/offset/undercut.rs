@@ -21,14 +21,12 @@ pub fn undercuts(ground: &Ground, offset: &Offset) -> Vec<Undercut> {
         .into_iter()
         .filter_map(|[from, to]| {
             let (depth, deepest) = deepest(ground, &way, radius, from, to)?;
-            let place = |at: f64| {
-                let count = ground.contour.segments.len();
-                let number = (at.floor() as usize).min(count * 2 - 1);
-                (number % count, at - number as f64)
-            };
+            // A region begins on the segment behind a node and ends on the one before it.
+            let count = ground.contour.segments.len();
+            let place = |number: f64, at: f64| (number as usize % count, at - number);
             (depth > 0.0).then(|| Undercut {
-                from: place(from),
-                to: place(to),
+                from: place(from.floor(), from),
+                to: place(to.ceil() - 1.0, to),
                 depth: ground.to_mm(depth),
                 deepest: ground.place(deepest),
             })
@@ -109,7 +107,7 @@ fn deepest(ground: &Ground, way: &Field, radius: f64, from: f64, to: f64) -> Opt
             let base = segment as f64 + round;
             let within = |at: f64| (at - base - stretch.from) / (stretch.to - stretch.from) - 0.5;
             let (a, b) = (within(from).max(-0.5), within(to).min(0.5));
-            if !(a < b) {
+            if a >= b {
                 continue;
             }
             let look = |tau: f64| {

@@ -1,9 +1,9 @@
 //! The machine on the simulator's axes: drives, motors, screws, friction, tables and encoders, in f64 and deterministic.
 //!
 //! A plant is read from TOML ([`parameters`]; errors name line, column, key and what would do) and runs beside the kernel, one
-//! call a tick. A servo axis runs the very servo of the firmware ([`shared::servo`], f32); a stepping axis gets the pulses that bring
-//! its field to the microstep nearest to the setpoint, evenly spread over the tick. What stands behind those commands is an
-//! [`axis::Axis`], which knows nothing of ticks and can hang on a virtual board's pins as well.
+//! call a tick. A servo axis runs the very servo of the firmware ([`shared::servo`], f32); a stepping axis gets the very pulses of the
+//! firmware ([`shared::steps`]), each at its slot. What stands behind those commands is an [`axis::Axis`], which knows nothing of ticks
+//! and can hang on a virtual board's pins as well.
 //!
 //! | model | file | integration |
 //! | --- | --- | --- |
@@ -18,6 +18,7 @@ pub mod axis;
 pub mod error;
 pub mod friction;
 pub mod parameters;
+pub mod pulses;
 pub mod servo_axis;
 pub mod stepper_axis;
 mod validate;
@@ -30,6 +31,7 @@ use shared::servo::{Servo, ServoState};
 
 use axis::{Axis, Command};
 pub use error::{Place, PlantError};
+use pulses::Pulses;
 use servo_axis::ServoAxis;
 use stepper_axis::StepperAxis;
 use validate::{Block, Checked};
@@ -51,6 +53,8 @@ pub struct Measured {
     pub saturated: [bool; 3],
     /// Full steps by which a stepping axis has fallen away from its field; see [`axis::Reading::lost_steps`].
     pub lost_steps: [i32; 3],
+    /// Whether a stepping axis was asked for more steps than its pulses allow, so that its field is not where the setpoint is.
+    pub overrun: [bool; 3],
 }
 
 /// A machine in motion.
@@ -63,17 +67,16 @@ pub struct Plant {
 }
 
 /// One coordinate with what moves it.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Driven {
     coordinate: usize,
     drive: Drive,
 }
 
-#[derive(Clone, Copy, Debug)]
-#[expect(clippy::large_enum_variant, reason = "a machine has three of them, and each tick would pay for a box")]
+#[derive(Clone, Debug)]
 enum Drive {
     Servo { servo: Servo<f32>, state: ServoState<f32>, axis: ServoAxis, takes_velocity: bool, counts: i32, count: f64 },
-    Stepper { axis: StepperAxis, count: Option<f64> },
+    Stepper { pulses: Pulses, axis: StepperAxis, count: Option<f64> },
 }
 
 impl Plant {
@@ -106,9 +109,11 @@ impl Plant {
                         let (state, count) = (servo.at_rest(Fixed(0), 0), 1.0 / model.encoder.counts_per_mm);
                         Drive::Servo { servo, state, axis: ServoAxis::new(model), takes_velocity, counts: 0, count }
                     }
-                    Checked::Stepper(model) => {
+                    Checked::Stepper(model, times) => {
+                        let pulses = Pulses::new(1.0 / model.microstep, times, tick);
+                        let pulses = pulses.map_err(|error| block.pulses_refused(error))?;
                         let count = model.encoder.map(|encoder| 1.0 / encoder.counts_per_mm);
-                        Drive::Stepper { axis: StepperAxis::new(model), count }
+                        Drive::Stepper { pulses, axis: StepperAxis::new(model), count }
                     }
                 };
                 axes.push(Driven { coordinate, drive });
@@ -183,9 +188,9 @@ impl Driven {
 
     /// The drive, motor and table alone, as they stand, for a controller elsewhere: a virtual board's pins.
     pub fn detached(&self) -> Box<dyn Axis + Send> {
-        match self.drive {
-            Drive::Servo { axis, .. } => Box::new(axis),
-            Drive::Stepper { axis, .. } => Box::new(axis),
+        match &self.drive {
+            Drive::Servo { axis, .. } => Box::new(*axis),
+            Drive::Stepper { axis, .. } => Box::new(*axis),
         }
     }
 
@@ -199,8 +204,8 @@ impl Driven {
                 measured.position[self.coordinate] = reading.position;
                 measured.encoder[self.coordinate] = f64::from(reading.counts) * *count;
             }
-            Drive::Stepper { axis, count } => {
-                let reading = axis.rest_at(at.to_mm());
+            Drive::Stepper { pulses, axis, count } => {
+                let reading = axis.rest_at_microstep(pulses.rest_at(at).into());
                 measured.position[self.coordinate] = reading.position;
                 measured.encoder[self.coordinate] = count.map_or(reading.position, |mm| f64::from(reading.counts) * mm);
             }
@@ -219,9 +224,10 @@ impl Driven {
                 *counts = reading.counts;
                 (reading, Some(*count))
             }
-            Drive::Stepper { axis, count } => {
-                let pulses = axis.nearest_microstep(at.to_mm()) - axis.field();
-                (axis.advance(Command::Steps(pulses as i32), tick), *count)
+            Drive::Stepper { pulses, axis, count } => {
+                let (pulses, result) = pulses.play(at);
+                measured.overrun[self.coordinate] = result.is_err();
+                (axis.advance_through(pulses, tick), *count)
             }
         };
         measured.position[self.coordinate] = reading.position;

@@ -57,6 +57,16 @@ fn default_step() -> f64 {
     1.0 / 16_384.0
 }
 
+/// 2.5 us, for pulses of up to 200 kHz.
+fn default_width() -> f64 {
+    2.5e-6
+}
+
+/// 5 us.
+fn default_turn() -> f64 {
+    5e-6
+}
+
 /// One axis, or several that are alike.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -171,6 +181,19 @@ pub enum DriveParameters {
         holding_torque: f64,
         /// rad/s at which the torque has fallen to 71 %, above 0.
         corner_speed: f64,
+        /// The shortest pulse that the drive counts, in s, 0 to 100 us like the three below. What is left out is typical of a
+        /// microstepping drive.
+        #[serde(default = "default_width")]
+        pulse: f64,
+        /// The shortest pause between two pulses, in s.
+        #[serde(default = "default_width")]
+        gap: f64,
+        /// The time from a change of direction to a pulse, in s.
+        #[serde(default = "default_turn")]
+        setup: f64,
+        /// The time from the end of a pulse to a change of direction, in s.
+        #[serde(default = "default_turn")]
+        hold: f64,
     },
 }
 

@@ -18,6 +18,7 @@ use shared::real::Real;
 
 use super::axis::{Axis, Command, Encoder, Play, Reading, Steps, whole_below};
 use super::friction::{Body, Friction, Glide};
+use super::pulses::Pulse;
 
 /// All that makes a stepping axis, in mm, s, and forces divided by the moving mass.
 #[derive(Clone, Copy, Debug)]
@@ -103,6 +104,42 @@ impl StepperAxis {
         self.play.carry(self.body.position);
     }
 
+    /// Puts field, rotor and table at rest on a microstep, counted from coordinate zero.
+    pub fn rest_at_microstep(&mut self, field: i64) -> Reading {
+        self.field = field;
+        self.body = Body { position: self.field as f64 * self.model.microstep, velocity: 0.0 };
+        self.play.rest_at(self.body.position);
+        self.reading()
+    }
+
+    /// Cuts a duration above 0 into integration steps.
+    #[inline]
+    fn cut(&mut self, duration: f64) -> Steps {
+        if !self.steps.fill(duration) {
+            self.steps = Steps::cut(duration, self.model.step);
+            self.glide = Glide::new(self.model.friction, self.steps.time);
+        }
+        self.steps
+    }
+
+    /// Lets `duration` seconds pass with `pulses` at their instants, which are in order, and returns what is to be seen then. Each
+    /// integration step sees the field as it stands in its middle.
+    pub fn advance_through(&mut self, pulses: &[Pulse], duration: f64) -> Reading {
+        let mut rest = pulses.iter();
+        let turn = |field: i64, pulse: &Pulse| field + if pulse.forward { 1 } else { -1 };
+        if duration > 0.0 {
+            let Steps { count, time, .. } = self.cut(duration);
+            for k in 0..count {
+                let middle = (f64::from(k) + 0.5) * time;
+                let come = rest.as_slice().iter().take_while(|pulse| pulse.instant < middle).count();
+                self.field = rest.by_ref().take(come).fold(self.field, turn);
+                self.step(self.field, time);
+            }
+        }
+        self.field = rest.fold(self.field, turn);
+        self.reading()
+    }
+
     fn reading(&self) -> Reading {
         let position = self.play.position();
         let counts = match self.model.encoder {
@@ -117,20 +154,13 @@ impl StepperAxis {
 impl Axis for StepperAxis {
     /// The field stands on the microstep that is nearest to `position`, and the rotor and the table on it.
     fn rest_at(&mut self, position: f64) -> Reading {
-        self.field = self.nearest_microstep(position);
-        self.body = Body { position: self.field as f64 * self.model.microstep, velocity: 0.0 };
-        self.play.rest_at(self.body.position);
-        self.reading()
+        self.rest_at_microstep(self.nearest_microstep(position))
     }
 
     fn advance(&mut self, command: Command, duration: f64) -> Reading {
         let pulses = if let Command::Steps(pulses) = command { i64::from(pulses) } else { 0 };
         if duration > 0.0 {
-            if !self.steps.fill(duration) {
-                self.steps = Steps::cut(duration, self.model.step);
-                self.glide = Glide::new(self.model.friction, self.steps.time);
-            }
-            let Steps { count, time, .. } = self.steps;
+            let Steps { count, time, .. } = self.cut(duration);
             // Pulses before the middle of step k: those with (j + 1/2)/asked below (k + 1/2)/count. The quotient is carried along.
             let (whole, mut part) = (2 * i64::from(count), pulses.abs() + i64::from(count));
             let mut field = self.field;

@@ -118,6 +118,36 @@ fn the_router_follows_or_says_what_it_lost() {
     }
 }
 
+/// The field stands on the microstep nearest to each setpoint, by whatever way it came there, and says so when it cannot.
+#[test]
+fn pulses_lead_to_the_nearest_microstep() {
+    let mut plant = Plant::from_toml(ROUTER, TICK).unwrap();
+    plant.rest_at(fixed(-1000.0, 500.0, 0.3));
+    let mut at = [-1000.0, 500.0, 0.3];
+    for k in 0..3000_u32 {
+        for (axis, x) in at.iter_mut().enumerate() {
+            // 640 microsteps/mm and 10 slots a pulse: at most 0.29 mm a tick.
+            *x += 0.28 * (f64::from(k) * [0.9, 1.7, 3.1][axis]).sin();
+        }
+        let measured = plant.advance(fixed(at[0], at[1], at[2]));
+        assert_eq!(measured.overrun, [false; 3]);
+        for (driven, x) in plant.axes().iter().zip(at) {
+            let Drive::Stepper { pulses, axis, .. } = &driven.drive else { panic!("a router has steppers") };
+            // A reversal may take its last steps into the next tick.
+            assert!((axis.field() - axis.nearest_microstep(Fixed::from_mm(x).to_mm())).abs() <= 3, "{k}");
+            assert_eq!(axis.field(), i64::from(pulses.position()));
+        }
+    }
+    for _ in 0..2 {
+        plant.advance(fixed(at[0], at[1], at[2]));
+    }
+    for (driven, x) in plant.axes().iter().zip(at) {
+        let Drive::Stepper { axis, .. } = &driven.drive else { panic!("a router has steppers") };
+        assert_eq!(axis.field(), axis.nearest_microstep(Fixed::from_mm(x).to_mm()));
+    }
+    assert_eq!(plant.advance(fixed(at[0], at[1] + 0.4, at[2])).overrun, [false, true, false]);
+}
+
 /// The same setpoints give the same bits, on a plant that has moved before and on a new one.
 #[test]
 fn equal_runs_are_equal_bits() {
@@ -201,6 +231,13 @@ fn each_fault_is_named_with_its_place() {
             "servo.velocity_gain is 3; it must be left out with",
         ),
         (ROUTER, "full_steps = 200", "full_steps = 202", "drive.stepper.full_steps is 202; it must be a multiple of 4"),
+        (
+            ROUTER,
+            "microsteps = 16",
+            "pulse = 0.001\nmicrosteps = 16",
+            "drive.stepper.pulse is 0.001; it must be 0 to 1e-4 s",
+        ),
+        (ROUTER, "lead = 5.0", "lead = 0.02", "microsteps is 16; it must be such that a mm has 0.01 to 131072 of them"),
         (ROUTER, "[\"z\"]", "[\"y\"]", "names is \"y\"; it must be some of"),
     ] {
         assert!(text.contains(from), "{from}");

@@ -5,22 +5,28 @@
 use std::f64::consts::TAU;
 
 use shared::servo::{DriveSettings, ServoError, ServoSettings};
+use shared::steps::StepError;
+use shared::steps::settings::{LEAST_STEPS_PER_MM, MOST_STEPS_PER_MM};
 use toml::de::{DeTable, DeValue};
 
 use super::axis::Encoder;
 use super::error::{Place, PlantError};
 use super::friction::Friction;
 use super::parameters::{AxisParameters, DriveParameters, EncoderParameters, PlantParameters};
+use super::pulses::InputTimes;
 use super::servo_axis::{DriveLaw, ServoAxisModel, Spring};
 use super::stepper_axis::StepperAxisModel;
+
+/// The longest time at a stepping drive's input, in s.
+const LONGEST_INPUT: f64 = 1e-4;
 
 /// What a block of axes has become.
 #[derive(Clone, Copy, Debug)]
 pub enum Checked {
     /// A servo drive with its controller.
     Servo(ServoSettings, ServoAxisModel),
-    /// A stepping drive.
-    Stepper(StepperAxisModel),
+    /// A stepping drive, with the times at its inputs.
+    Stepper(StepperAxisModel, InputTimes),
 }
 
 /// Reads the form; ranges are [`Block::check`]'s.
@@ -98,6 +104,15 @@ impl Block<'_> {
     pub fn refused(&self, error: ServoError) -> PlantError {
         let section = if matches!(error, ServoError::CountsPerMm(_)) { "encoder" } else { "servo" };
         self.fault(&[section, error.key()], error.found().to_string(), error.remedy().into())
+    }
+
+    /// The shared code refused the pulses.
+    pub fn pulses_refused(&self, error: StepError) -> PlantError {
+        let path = match error {
+            StepError::Time { time, .. } => ["drive", "stepper", time.key()],
+            _ => ["drive", "stepper", "microsteps"],
+        };
+        PlantError::Form { place: locate(self.text, Some(self.index), &path), message: error.to_string() }
     }
 
     /// Sliding friction and what it takes to leave rest.
@@ -209,7 +224,16 @@ impl Block<'_> {
                 let settings = self.tuning(encoder, None)?;
                 Ok(Checked::Servo(settings, servo(DriveLaw::Torque(all / driven), push(peak), 0.0, encoder)))
             }
-            DriveParameters::Stepper { full_steps, microsteps, holding_torque, corner_speed } => {
+            DriveParameters::Stepper {
+                full_steps,
+                microsteps,
+                holding_torque,
+                corner_speed,
+                pulse,
+                gap,
+                setup,
+                hold,
+            } => {
                 let path = |key: &'static str| ["drive", "stepper", key];
                 if spring.is_some() {
                     return Err(self.fault(&["coupling"], "given".into(), "left out with a stepper drive".into()));
@@ -225,9 +249,21 @@ impl Block<'_> {
                 self.within(&path("holding_torque"), holding_torque, 1e-9, 1e6, "N m")?;
                 self.within(&path("corner_speed"), corner_speed, 1e-3, 1e6, "rad/s")?;
                 let holding = push(holding_torque);
+                let time = |key, value| self.within(&path(key), value, 0.0, LONGEST_INPUT, "s");
+                let times = InputTimes {
+                    pulse: time("pulse", pulse)?,
+                    gap: time("gap", gap)?,
+                    setup: time("setup", setup)?,
+                    hold: time("hold", hold)?,
+                };
                 let turn = 4.0 * axis.lead / f64::from(full_steps);
+                let steps_per_mm = f64::from(4 * microsteps) / turn;
+                if !(LEAST_STEPS_PER_MM..=MOST_STEPS_PER_MM).contains(&steps_per_mm) {
+                    let needed = format!("such that a mm has {LEAST_STEPS_PER_MM} to {MOST_STEPS_PER_MM} of them");
+                    return Err(self.fault(&path("microsteps"), microsteps.to_string(), needed));
+                }
                 self.resolved(&path("holding_torque"), holding_torque, (holding * TAU / turn).sqrt() / TAU)?;
-                Ok(Checked::Stepper(StepperAxisModel {
+                let model = StepperAxisModel {
                     microstep: turn / f64::from(4 * microsteps),
                     turn: 4 * microsteps as i32,
                     holding,
@@ -237,7 +273,8 @@ impl Block<'_> {
                     play,
                     encoder: axis.encoder.as_ref().map(|encoder| self.encoder(encoder)).transpose()?,
                     step: self.step,
-                }))
+                };
+                Ok(Checked::Stepper(model, times))
             }
         }
     }

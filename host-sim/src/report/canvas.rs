@@ -132,6 +132,13 @@ impl Canvas<'_> {
         self.dot(at, radius - 1.7, hole)
     }
 
+    /// A circle.
+    pub fn circle(&mut self, at: Point, radius: f64, stroke: Stroke) -> Result<(), ReportError> {
+        let stroke_width = (stroke.width * PARTS).round() as u32;
+        let style = ShapeStyle { color: stroke.colour.to_rgba(), filled: false, stroke_width };
+        drawn(self.backend.draw_circle(place(at), (radius * PARTS).round() as u32, &style, false))
+    }
+
     /// A text in ink.
     pub fn text(&mut self, at: Point, text: &str, anchor: Anchor) -> Result<(), ReportError> {
         self.coloured_text(at, text, anchor, INK, false)
@@ -172,6 +179,10 @@ impl Canvas<'_> {
             match *mark {
                 Mark::Line(stroke) => self.line([(x, at.1), (x + SWATCH, at.1)], stroke)?,
                 Mark::Dot(colour) => self.dot((x + 0.5 * SWATCH, at.1), 4.5, colour)?,
+                Mark::Circle(stroke) => self.circle((x + 0.5 * SWATCH, at.1), 8.0, stroke)?,
+                Mark::Area(colour) => {
+                    self.rectangle((x + 5.0, at.1 - 6.0), (x + SWATCH - 5.0, at.1 + 6.0), colour)?;
+                }
                 Mark::Ring(colour, hole) => self.ring((x + 0.5 * SWATCH, at.1), 5.5, colour, hole)?,
             }
             self.text((x + SWATCH + 6.0, at.1), text, Anchor::Left)?;
@@ -190,6 +201,10 @@ pub enum Mark {
     Dot(RGBColor),
     /// A ring and its hole.
     Ring(RGBColor, RGBColor),
+    /// A circle.
+    Circle(Stroke),
+    /// An area.
+    Area(RGBColor),
 }
 
 fn place((x, y): Point) -> (i32, i32) {

@@ -5,11 +5,12 @@ use shared::curve::Curve as _;
 use super::ReportError;
 use super::canvas::{Anchor, Canvas, Mark, Picture, Stroke};
 use super::chart::{COLUMNS, Strip, TimeChart, Trace};
-use super::geometry::{Detail, Outlines, Place};
+use super::geometry::{Detail, Material, Outlines, Place};
 use super::plane::View;
 use super::series::{Point, decimate, number, round_step, three_figures};
-use super::style::{FRAME, GROUND, INK, MAIN, OTHER, PAPER};
-use crate::job::{Job, Units};
+use super::style::{FRAME, GROUND, INK, LEFT, MAIN, OTHER, PAPER, SOFT};
+use crate::job::{Job, Part, Units};
+use crate::offset::{Offset, Undercut};
 use crate::path::Path;
 use crate::simulate::Sample;
 
@@ -17,9 +18,15 @@ use crate::simulate::Sample;
 const SINGLE: f64 = 300.0;
 /// The height of a chart of several strips.
 const STACKED: f64 = 560.0;
+/// More rings than this would hide the path.
+const MOST_RINGS: usize = 300;
 const CONTOUR: Stroke = Stroke::new(INK, 2.0);
 const UNTRIMMED: Stroke = Stroke::new(OTHER, 1.7);
 const TRIMMED: Stroke = Stroke::new(MAIN, 2.4);
+/// Loops of the trimmed offset that are not run.
+const OTHERS: Stroke = Stroke::new(MAIN, 0.9);
+/// The tool where it comes nearest to what it leaves.
+const TOOL: Stroke = Stroke::new(SOFT, 1.0);
 const COMMANDED: Stroke = Stroke::new(OTHER, 2.8);
 const MEASURED: Stroke = Stroke::new(MAIN, 1.2);
 
@@ -29,28 +36,62 @@ pub fn per_minute(units: Units, feed: f64) -> f64 {
 }
 
 /// Contour and untrimmed offset, and contour and trimmed offset with its trim points, in the same frame.
-pub fn offsets(job: &Job, path: &Path) -> Result<[Picture; 2], ReportError> {
-    let outlines = Outlines::new(job, path);
+pub fn offsets(job: &Job, path: &Path, undercuts: &[Undercut]) -> Result<[Picture; 2], ReportError> {
+    let mut outlines = Outlines::new(job, path);
+    if let Some(trimmed) = &path.trimmed {
+        outlines = outlines.leaving(&job.contour, &trimmed.offset, undercuts);
+    }
     let view = View::around(outlines.all(), job.units.mm());
-    let draw = |title: &str, trimmed: bool| {
-        Picture::draw(view.size(false), title, |canvas| {
-            view.axes_over(canvas, job, &outlines)?;
-            if trimmed {
-                for piece in &outlines.trimmed {
-                    view.line(canvas, piece, TRIMMED)?;
-                }
-                view.rings(canvas, &outlines)?;
-            } else {
-                view.line(canvas, &outlines.untrimmed, UNTRIMMED)?;
-            }
-            view.line(canvas, &outlines.contour, CONTOUR)?;
-            let contour = (Mark::Line(CONTOUR), "contour C");
-            let entries = [contour, (Mark::Line(UNTRIMMED), "untrimmed offset")];
-            let trims = [contour, (Mark::Line(TRIMMED), "trimmed offset"), (Mark::Ring(INK, PAPER), "trim point")];
-            canvas.key(view.key_place(), Anchor::Right, if trimmed { &trims } else { &entries })
-        })
-    };
-    Ok([draw("The contour and its untrimmed offset", false)?, draw("The contour and its trimmed offset", true)?])
+    let untrimmed = Picture::draw(view.size(false), "The contour and its untrimmed offset", |canvas| {
+        view.axes_over(canvas, job.units, &outlines)?;
+        view.line(canvas, &outlines.untrimmed, UNTRIMMED)?;
+        view.line(canvas, &outlines.contour, CONTOUR)?;
+        let entries = [(Mark::Line(CONTOUR), "contour C"), (Mark::Line(UNTRIMMED), "untrimmed offset")];
+        canvas.key(view.key_place(), Anchor::Right, &entries)
+    })?;
+    let trimmed = Picture::draw(view.size(false), "The contour and its trimmed offset", |canvas| {
+        view.axes_over(canvas, job.units, &outlines)?;
+        view.left(canvas, &outlines)?;
+        view.trimmed(canvas, &outlines)?;
+        let lines = vec![(Mark::Line(CONTOUR), "contour C"), (Mark::Line(TRIMMED), "trimmed offset")];
+        canvas.key(view.key_place(), Anchor::Right, &[lines, marks(&outlines, "left")].concat())
+    })?;
+    Ok([untrimmed, trimmed])
+}
+
+/// Contour, untrimmed and trimmed offset, trim points and what the tool leaves, in one picture.
+pub fn trimming(part: &Part, offset: &Offset, undercuts: &[Undercut]) -> Result<Picture, ReportError> {
+    let outlines = Outlines::of_offset(&part.contour, offset).leaving(&part.contour, offset, undercuts);
+    let radius = offset.distance.abs();
+    // A tool larger than the contour would leave no room for it in the picture.
+    let [low, high] = part.contour.extent();
+    let tool = outlines.tool(undercuts).filter(|_| 2.0 * radius < (high - low).norm());
+    let box_of = |place: Place| [place - Place::new(radius, radius), place + Place::new(radius, radius)];
+    let view = View::around(outlines.all().chain(tool.into_iter().flat_map(box_of)), part.units.mm());
+    let title = format!("The trimmed offset of {} at distance {}", part.name(), part.units.length(offset.distance));
+    let lines = [(CONTOUR, "contour C"), (UNTRIMMED, "untrimmed offset"), (TRIMMED, "trimmed offset")];
+    let mut below = marks(&outlines, "material left");
+    below.extend(tool.map(|_| (Mark::Circle(TOOL), "tool")));
+    let rows = [lines.map(|(stroke, text)| (Mark::Line(stroke), text)).to_vec(), below];
+    Picture::draw(view.size_over_key(rows.len()), title, |canvas| {
+        view.axes_over(canvas, part.units, &outlines)?;
+        view.left(canvas, &outlines)?;
+        view.line(canvas, &outlines.untrimmed, UNTRIMMED)?;
+        if let Some(place) = tool {
+            canvas.circle(view.at(place), view.length(radius), TOOL)?;
+        }
+        view.trimmed(canvas, &outlines)?;
+        view.key_below(canvas, &rows)
+    })
+}
+
+/// What there is to be seen beside lines.
+fn marks(outlines: &Outlines, left: &'static str) -> Vec<(Mark, &'static str)> {
+    let entries = [
+        ((1..=MOST_RINGS).contains(&outlines.corners.len()), Mark::Ring(INK, PAPER), "trim point"),
+        (!outlines.left.is_empty(), Mark::Area(LEFT), left),
+    ];
+    entries.into_iter().filter(|entry| entry.0).map(|(_, mark, text)| (mark, text)).collect()
 }
 
 /// The path in the colours of the commanded centre feed, from zero to `most` in mm/s.
@@ -60,7 +101,7 @@ pub fn feed_along_path(job: &Job, path: &Path, samples: &[Sample], most: f64) ->
     let title = format!("The path coloured by the centre feed, w = {}", path.weight);
     let offset = job.offset != 0.0;
     Picture::draw(view.size(true), title, |canvas| {
-        view.axes_over(canvas, job, &outlines)?;
+        view.axes_over(canvas, job.units, &outlines)?;
         if offset {
             view.line(canvas, &outlines.contour, CONTOUR)?;
         }
@@ -243,18 +284,39 @@ pub fn milliseconds(ticks: u64) -> String {
 }
 
 impl View {
-    /// Axes over the part that a closed contour encloses.
-    fn axes_over(&self, canvas: &mut Canvas<'_>, job: &Job, outlines: &Outlines) -> Result<(), ReportError> {
-        if job.closed {
-            self.area(canvas, &outlines.contour, GROUND)?;
+    /// Axes over the part.
+    fn axes_over(&self, canvas: &mut Canvas<'_>, units: Units, outlines: &Outlines) -> Result<(), ReportError> {
+        match outlines.material {
+            Material::Inside => self.area(canvas, &outlines.contour, GROUND)?,
+            Material::Outside => {
+                self.all(canvas, GROUND)?;
+                self.area(canvas, &outlines.contour, PAPER)?;
+            }
+            Material::Unbounded => (),
         }
-        self.axes(canvas, job.units.short())
+        self.axes(canvas, units.short())
+    }
+
+    /// What the tool leaves.
+    fn left(&self, canvas: &mut Canvas<'_>, outlines: &Outlines) -> Result<(), ReportError> {
+        outlines.left.iter().try_for_each(|area| self.area(canvas, area, LEFT))
+    }
+
+    /// The trimmed offset with its trim points, the loops that are not run thinner, and the contour.
+    fn trimmed(&self, canvas: &mut Canvas<'_>, outlines: &Outlines) -> Result<(), ReportError> {
+        for other in &outlines.others {
+            self.line(canvas, other, OTHERS)?;
+        }
+        for piece in &outlines.trimmed {
+            self.line(canvas, piece, TRIMMED)?;
+        }
+        self.line(canvas, &outlines.contour, CONTOUR)?;
+        self.rings(canvas, outlines)
     }
 
     /// A ring at every corner; where there are so many that they would hide the path, none.
     fn rings(&self, canvas: &mut Canvas<'_>, outlines: &Outlines) -> Result<(), ReportError> {
-        const MOST: usize = 300;
-        for &corner in outlines.corners.iter().filter(|_| outlines.corners.len() <= MOST) {
+        for &corner in outlines.corners.iter().filter(|_| outlines.corners.len() <= MOST_RINGS) {
             canvas.ring(self.at(corner), 5.5, INK, PAPER)?;
         }
         Ok(())

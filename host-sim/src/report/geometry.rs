@@ -1,9 +1,12 @@
 //! Contour, untrimmed and trimmed offset as points to draw: equation (2), over the whole of each segment or over the pieces.
 
 use shared::complex::Complex;
-use shared::curve::{Curve as _, Segment};
+use shared::curve::Curve as _;
 
+use super::leftover;
+use crate::contour::{Contour, SMOOTH};
 use crate::job::Job;
+use crate::offset::{Loop, Offset, Undercut};
 use crate::path::{Path, PathPiece};
 
 /// A point of the plane, in mm.
@@ -11,56 +14,123 @@ pub type Place = Complex<f64>;
 
 /// Points on a curve, for a picture of it; many curves share a budget of this size.
 const BUDGET: usize = 16_000;
-/// A turn of the tangent below this, in radians, leaves no gap that an arc would have to fill.
-const SMOOTH: f64 = 1e-6;
+
+/// Where the part is, of which C is the outline.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Material {
+    /// Inside C.
+    Inside,
+    /// Outside C: it is a pocket.
+    Outside,
+    /// C is open, and has no side that is all of the part's.
+    Unbounded,
+}
 
 /// What the trimming is about, each as lines of points.
 #[derive(Clone, Debug)]
 pub struct Outlines {
     /// The contour C, in one line.
     pub contour: Vec<Place>,
+    /// Where the part is.
+    pub material: Material,
     /// The untrimmed offset with the arcs that join it over the nodes, in one line.
     pub untrimmed: Vec<Place>,
     /// The path, one line for each run of pieces that meet.
     pub trimmed: Vec<Vec<Place>>,
+    /// The loops of the trimmed offset that are not run.
+    pub others: Vec<Vec<Place>>,
     /// Where the path has a tangent break.
     pub corners: Vec<Place>,
+    /// The material that the tool leaves, as areas.
+    pub left: Vec<Vec<Place>>,
 }
 
 impl Outlines {
-    /// Samples all of it.
+    /// Samples the path of a job, and the offset that it was taken from.
     pub fn new(job: &Job, path: &Path) -> Self {
-        let steps = steps(job.segments.len());
-        let contour = job.segments.iter().flat_map(|segment| along(steps, 0.0, 1.0, |xi| segment.point(xi))).collect();
-        let steps = self::steps(path.pieces.len());
+        let mut all = Self::of_contour(&job.contour, job.offset);
+        let steps = steps(path.pieces.len());
         let meets = |a: Option<&Place>, b: Option<&Place>| match (a, b) {
             (Some(&a), Some(&b)) => (a - b).norm() <= job.tolerance,
             _ => false,
         };
-        let mut trimmed: Vec<Vec<Place>> = Vec::new();
-        let mut corners: Vec<Place> = Vec::new();
         for piece in &path.pieces {
             let points = centre(piece, steps);
-            match trimmed.last_mut().filter(|line| meets(line.last(), points.first())) {
+            match all.trimmed.last_mut().filter(|line| meets(line.last(), points.first())) {
                 Some(line) => line.extend(points),
-                None => trimmed.push(points),
+                None => all.trimmed.push(points),
             }
             let [from, to] = piece.interval;
-            let ends = [(piece.start.is_some(), from), (piece.end.is_some(), to)];
+            let ends = [(piece.start_corner.is_some(), from), (piece.end_corner.is_some(), to)];
             for at in ends.into_iter().filter(|(corner, _)| *corner).map(|(_, xi)| piece.point(xi)) {
                 // One piece ends where the next one starts, and the last where the first starts.
-                if !meets(corners.last(), Some(&at)) && !meets(corners.first(), Some(&at)) {
-                    corners.push(at);
+                if !meets(all.corners.last(), Some(&at)) && !meets(all.corners.first(), Some(&at)) {
+                    all.corners.push(at);
                 }
             }
         }
-        Self { contour, untrimmed: untrimmed(job), trimmed, corners }
+        if let Some(trimmed) = &path.trimmed {
+            let others = trimmed.offset.loops.iter().enumerate().filter(|(number, _)| *number != trimmed.number);
+            all.others = others.map(|(_, found)| run(&job.contour, found, trimmed.offset.distance, steps)).collect();
+        }
+        all
+    }
+
+    /// Samples a trimmed offset, all of whose loops are the path.
+    pub fn of_offset(contour: &Contour, offset: &Offset) -> Self {
+        let mut all = Self::of_contour(contour, offset.distance);
+        let steps = steps(offset.loops.iter().map(|found| found.pieces.len()).sum());
+        for found in &offset.loops {
+            all.trimmed.push(run(contour, found, offset.distance, steps));
+            all.corners.extend(found.pieces.iter().filter(|p| p.start_turn.abs() > SMOOTH).map(|p| p.start));
+        }
+        all
+    }
+
+    /// This with the material that the tool of `offset` leaves.
+    pub fn leaving(mut self, contour: &Contour, offset: &Offset, undercuts: &[Undercut]) -> Self {
+        self.left = leftover::areas(contour, offset, undercuts, &self.contour);
+        self
+    }
+
+    /// Where the tool's centre is when it comes nearest to the thickest of what it leaves: the nearest trim point.
+    pub fn tool(&self, undercuts: &[Undercut]) -> Option<Place> {
+        let thickest = undercuts.iter().max_by(|a, b| a.depth.total_cmp(&b.depth))?;
+        let distance = |place: &Place| (*place - thickest.deepest).norm();
+        self.corners.iter().copied().min_by(|a, b| distance(a).total_cmp(&distance(b)))
+    }
+
+    fn of_contour(contour: &Contour, distance: f64) -> Self {
+        let steps = steps(contour.segments.len());
+        let line: Vec<Place> =
+            contour.segments.iter().flat_map(|segment| along(steps, 0.0, 1.0, |xi| segment.point(xi))).collect();
+        let material = match contour.closed {
+            false => Material::Unbounded,
+            // Right of travel is outside of an anticlockwise contour; the tool is there where d is positive.
+            true if distance != 0.0 && (area(&line) > 0.0) != (distance > 0.0) => Material::Outside,
+            true => Material::Inside,
+        };
+        Self {
+            untrimmed: untrimmed(contour, distance),
+            contour: line,
+            material,
+            trimmed: Vec::new(),
+            others: Vec::new(),
+            corners: Vec::new(),
+            left: Vec::new(),
+        }
     }
 
     /// All points, for the extent of a picture.
     pub fn all(&self) -> impl Iterator<Item = Place> {
-        self.contour.iter().chain(&self.untrimmed).chain(self.trimmed.iter().flatten()).copied()
+        self.contour.iter().chain(&self.untrimmed).chain(self.trimmed.iter().chain(&self.others).flatten()).copied()
     }
+}
+
+/// The signed area within a closed line, positive anticlockwise.
+fn area(line: &[Place]) -> f64 {
+    let next = line.iter().cycle().skip(1);
+    line.iter().zip(next).map(|(&a, &b)| 0.5 * a.cross(b)).sum()
 }
 
 /// The way of the tool's centre on a piece.
@@ -69,29 +139,33 @@ fn centre(piece: &PathPiece, steps: u32) -> Vec<Place> {
     along(steps, from, to, |xi| piece.point(xi)).collect()
 }
 
+/// The way of the tool's centre on a loop.
+fn run(contour: &Contour, found: &Loop, distance: f64, steps: u32) -> Vec<Place> {
+    let curves = found.pieces.iter().filter_map(|piece| contour.carrier(piece.along, distance));
+    curves
+        .flat_map(|(segment, [from, to], distance)| {
+            along(steps, from, to, move |xi| segment.offset_point(xi, distance))
+        })
+        .collect()
+}
+
 /// The offset to the whole of each segment, and about each node the arc from d n of one segment to d n of the next.
-fn untrimmed(job: &Job) -> Vec<Place> {
-    let steps = steps(job.segments.len());
+fn untrimmed(contour: &Contour, distance: f64) -> Vec<Place> {
+    let steps = steps(contour.segments.len());
     let mut all: Vec<Place> = Vec::new();
-    for (number, segment) in job.segments.iter().enumerate() {
-        all.extend(along(steps, 0.0, 1.0, |xi| segment.offset_point(xi, job.offset)));
-        let last = number + 1 == job.segments.len();
-        if let Some(next) = job.segments.get(if last { 0 } else { number + 1 }).filter(|_| !last || job.closed) {
-            all.extend(node_arc(segment, next, job.offset));
-        }
+    for (number, segment) in contour.segments.iter().enumerate() {
+        all.extend(along(steps, 0.0, 1.0, |xi| segment.offset_point(xi, distance)));
+        all.extend(node_arc(contour, number, distance));
     }
     all
 }
 
-/// The arc about the node between two segments; empty where the node is smooth.
-fn node_arc(before: &Segment<f64>, after: &Segment<f64>, offset: f64) -> Vec<Place> {
-    let (first, second) = (before.tangent(1.0), after.tangent(0.0));
-    let turn = (first.conj() * second).arg();
-    if turn.abs() < SMOOTH {
-        return Vec::new();
+/// The arc about a node; empty where the node is smooth, and where there is none.
+fn node_arc(contour: &Contour, node: usize, distance: f64) -> Vec<Place> {
+    match contour.fill_arc(node, distance).filter(|arc| arc.sweep.abs() > SMOOTH) {
+        Some(arc) => along(48, 0.0, 1.0, |xi| arc.point(xi)).collect(),
+        None => Vec::new(),
     }
-    let (centre, radius) = (before.point(1.0), first.right() * offset);
-    along(48, 0.0, turn, |angle| centre + radius * Complex::new(angle.cos(), angle.sin())).collect()
 }
 
 fn steps(curves: usize) -> u32 {
@@ -123,7 +197,7 @@ impl Detail {
         /// Below this the two speeds look the same.
         const NOTABLE: f64 = 1.2;
         let steps = steps(path.pieces.len());
-        let peaks = path.pieces.iter().enumerate().filter(|(_, piece)| !piece.fill).flat_map(|(number, piece)| {
+        let peaks = path.pieces.iter().enumerate().filter(|(_, piece)| !piece.is_fill()).flat_map(|(number, piece)| {
             let [from, to] = piece.interval;
             (0..=steps).map(move |k| {
                 let xi = from + (to - from) * f64::from(k) / f64::from(steps);
@@ -172,15 +246,17 @@ mod tests {
     #[test]
     fn untrimmed_points_are_at_the_offset_distance() {
         let (job, path) = published();
-        let steps = steps(job.segments.len());
-        for segment in &job.segments {
+        let steps = steps(job.contour.segments.len());
+        for segment in &job.contour.segments {
             let contour = along(steps, 0.0, 1.0, |xi| segment.point(xi));
             let offset = along(steps, 0.0, 1.0, |xi| segment.offset_point(xi, job.offset));
             assert!(contour.zip(offset).all(|(c, o)| ((c - o).norm() - 25.4).abs() < 1e-9));
         }
-        for pair in job.segments.windows(2) {
-            let node = pair[0].point(1.0);
-            assert!(node_arc(&pair[0], &pair[1], job.offset).iter().all(|&p| ((p - node).norm() - 25.4).abs() < 1e-9));
+        for (number, segment) in job.contour.segments.iter().enumerate() {
+            let node = segment.point(1.0);
+            assert!(
+                node_arc(&job.contour, number, job.offset).iter().all(|&p| ((p - node).norm() - 25.4).abs() < 1e-9)
+            );
         }
         let outlines = Outlines::new(&job, &path);
         // Contour points are less than 0.1 mm apart: their chords are nearer to the true curve than the bar below.

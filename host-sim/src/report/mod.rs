@@ -6,13 +6,14 @@
 //! | `figures` | one function for each kind of picture |
 //! | `tables` | published tables beside what came out here |
 //! | `plane`, `chart` | coordinates: the plane with one scale on both axes; strips over one time axis |
-//! | `geometry`, `series` | the points to draw: offsets and contact points; thinned series and round ticks |
+//! | `geometry`, `leftover`, `series` | the points to draw: offsets and contact points; what the tool leaves; thinned series and round ticks |
 //! | `canvas`, `page`, `style` | marks as SVG, text as HTML, colours and sizes |
 
 mod canvas;
 mod chart;
 mod figures;
 mod geometry;
+mod leftover;
 mod page;
 mod plane;
 mod reproduction;
@@ -23,7 +24,8 @@ mod tables;
 
 use std::fmt;
 
-use crate::job::Job;
+use crate::job::{Job, Part};
+use crate::offset::{Offset, Undercut};
 use crate::path::Path;
 use crate::simulate::Sample;
 
@@ -57,4 +59,9 @@ pub fn picture(job: &Job, path: &Path, samples: &[Sample]) -> Result<String, Rep
     }
     let most = figures::scale_end(job.units, samples.iter().map(|sample| sample.feed));
     Ok(figures::feed_along_path(job, path, samples, most)?.file())
+}
+
+/// The trimming of a contour as an SVG file: contour, untrimmed and trimmed offset, trim points, and what the tool leaves.
+pub fn offset_picture(part: &Part, offset: &Offset, undercuts: &[Undercut]) -> Result<String, ReportError> {
+    Ok(figures::trimming(part, offset, undercuts)?.file())
 }

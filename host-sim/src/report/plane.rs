@@ -3,7 +3,7 @@
 use plotters::style::RGBColor;
 
 use super::ReportError;
-use super::canvas::{Anchor, Canvas, Stroke};
+use super::canvas::{Anchor, Canvas, Mark, Stroke};
 use super::geometry::Place;
 use super::series::{Point, round_step, ticks};
 use super::style::{FRAME, GRID, INK, SOFT, WIDTH, viridis};
@@ -16,6 +16,8 @@ const TOP: f64 = 40.0;
 const BOTTOM: f64 = 50.0;
 /// Under that: a colour scale.
 const COLOURS: f64 = 62.0;
+/// Under that, or in its place: a row of a key.
+const ROW: f64 = 26.0;
 /// The tallest and the flattest plot.
 const TALLEST: f64 = 620.0;
 const FLATTEST: f64 = 150.0;
@@ -66,6 +68,26 @@ impl View {
         (WIDTH, TOP + self.plot.1 + BOTTOM + if colours { COLOURS } else { 0.0 })
     }
 
+    /// The size of the picture with a key of so many rows under the plot.
+    pub fn size_over_key(&self, rows: usize) -> Point {
+        let (width, height) = self.size(false);
+        (width, height + rows as f64 * ROW)
+    }
+
+    /// A key under the plot, where one beside the y axis's name would be too wide.
+    pub fn key_below(&self, canvas: &mut Canvas<'_>, rows: &[Vec<(Mark, &str)>]) -> Result<(), ReportError> {
+        let (middle, top) = (LEFT + 0.5 * self.plot.0, self.size(false).1 + 0.5 * ROW);
+        for (number, row) in rows.iter().enumerate() {
+            canvas.key((middle, top + number as f64 * ROW), Anchor::Middle, row)?;
+        }
+        Ok(())
+    }
+
+    /// A length in mm as one on the sheet.
+    pub fn length(&self, mm: f64) -> f64 {
+        mm / self.mm * self.scale
+    }
+
     /// Where a key begins.
     pub fn key_place(&self) -> Point {
         (WIDTH - RIGHT, 0.5 * TOP)
@@ -113,6 +135,11 @@ impl View {
     /// The area within `places`.
     pub fn area(&self, canvas: &mut Canvas<'_>, places: &[Place], colour: RGBColor) -> Result<(), ReportError> {
         canvas.area(self.thin(places), colour)
+    }
+
+    /// The whole plot.
+    pub fn all(&self, canvas: &mut Canvas<'_>, colour: RGBColor) -> Result<(), ReportError> {
+        canvas.rectangle((LEFT, TOP), (WIDTH - RIGHT, TOP + self.plot.1), colour)
     }
 
     fn thin(&self, places: &[Place]) -> Vec<Point> {

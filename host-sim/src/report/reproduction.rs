@@ -32,7 +32,7 @@ pub fn reproduction(result: &Reproduction) -> Result<String, ReportError> {
     limits(&mut page, result);
     page.heading("Contour and offset");
     page.figure(
-        &offsets(&result.job, &result.path)?,
+        &offsets(&result.job, &result.path, &[])?,
         Layout::Pair,
         "As the paper's figure 1. First the contour C and its untrimmed offset, joined by arcs about the nodes; it crosses \
          itself in loops at the concave nodes and where C bends more sharply than the tool. Then the trimmed offset, the path \

@@ -8,8 +8,10 @@ use super::geometry::Detail;
 use super::page::{Layout, Page, escape};
 use super::series::{number, three_figures};
 use crate::job::Job;
+use crate::offset::undercuts;
 use crate::path::Path;
 use crate::simulate::{Outcome, Sample};
+use crate::trimming::Trimming;
 
 /// The report of one simulation. Errors: a run without samples; a picture that cannot be drawn.
 pub fn simulation(job: &Job, path: &Path, outcome: &Outcome, samples: &[Sample]) -> Result<String, ReportError> {
@@ -26,7 +28,16 @@ pub fn simulation(job: &Job, path: &Path, outcome: &Outcome, samples: &[Sample])
     ));
     if job.offset != 0.0 {
         page.heading("Contour and offset");
-        page.figure(&offsets(job, path)?, Layout::Pair, OFFSETS);
+        let trimming = path.trimmed.as_ref().map(|trimmed| {
+            let undercuts = undercuts(&job.contour, &trimmed.offset);
+            let result = Trimming::new(&job.contour, &trimmed.offset, &undercuts, job.units);
+            (undercuts, result)
+        });
+        let undercuts = trimming.as_ref().map_or(&[][..], |(undercuts, _)| undercuts);
+        page.figure(&offsets(job, path, undercuts)?, Layout::Pair, OFFSETS);
+        if let (Some((_, result)), Some(trimmed)) = (&trimming, &path.trimmed) {
+            page.paragraph(&reached(result, trimmed.number));
+        }
     }
     page.heading("Feed along the path");
     page.block("<div class=\"charts\">");
@@ -61,13 +72,42 @@ const OFFSETS: &str = "First the contour C and its untrimmed offset, drawn along
     offset, which is the tool's path; it keeps only what is nowhere nearer to C than the tool's radius. Rings are trim points, \
     where the path turns abruptly.";
 
+/// What the tool leaves, and which loop of several is run.
+fn reached(result: &Trimming, run: usize) -> String {
+    let unit = result.units.short();
+    let loops = match result.loops.len() {
+        1 => String::new(),
+        count => {
+            format!("The trimmed offset has {count} loops; this run is loop {run}, the others are drawn thin. ")
+        }
+    };
+    let left = match result.undercuts.len() {
+        0 => "The tool reaches all of the contour.".to_string(),
+        count => format!(
+            "The tool leaves material in {count} {}, up to {} {unit} thick (shaded).",
+            if count == 1 { "place" } else { "places" },
+            three_figures(result.largest_undercut),
+        ),
+    };
+    let reaching = match (result.largest_reaching_tool, result.sharp_corners.as_slice()) {
+        (None, _) => "A tool of any radius would.".to_string(),
+        (Some(0.0), [_, ..]) => {
+            "No tool reaches everything, because the contour has sharp concave corners.".to_string()
+        }
+        (Some(radius), _) => {
+            format!("The largest tool that reaches everything has radius {} {unit}.", number(radius, 4))
+        }
+    };
+    format!("{loops}{left} {reaching}")
+}
+
 fn lead(job: &Job, path: &Path, machine: bool) -> String {
     let unit = job.units.short();
     let length = |mm: f64| number(mm / job.units.mm(), 3);
     format!(
         "{} pieces along {} segments, offset {} {unit}, feed {} {unit}/min, weight w = {}, reduction f = {}, ramp \u{3bb} = {}; {}.",
         path.pieces.len(),
-        job.segments.len(),
+        job.contour.segments.len(),
         length(job.offset),
         number(per_minute(job.units, job.feed.rate), 1),
         path.weight,
@@ -213,6 +253,17 @@ mod tests {
         assert_eq!(html.matches("<figure").count(), 7);
         assert_eq!(html.matches("<svg").count(), 8);
         assert!(html.len() < 2_000_000);
+    }
+
+    /// Two loops, of which one is run, and four places that the tool does not reach.
+    #[test]
+    fn trimmed_pocket_says_what_is_left() {
+        let html = report(include_str!("../../../examples/pocket.toml"), 0.0);
+        for words in
+            ["has 2 loops; this run is loop 0", "leaves material in 4 places", "No tool reaches everything", "auto"]
+        {
+            assert!(html.contains(words), "{words}");
+        }
     }
 
     #[test]

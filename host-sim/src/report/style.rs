@@ -19,6 +19,8 @@ pub const GROUND: RGBColor = RGBColor(0xf1, 0xf0, 0xec);
 pub const MAIN: RGBColor = RGBColor(0x1c, 0x5d, 0x99);
 /// What was commanded, and the untrimmed offset.
 pub const OTHER: RGBColor = RGBColor(0xe0, 0x86, 0x2c);
+/// Material that the tool leaves.
+pub const LEFT: RGBColor = RGBColor(0xd9, 0x8c, 0x8c);
 /// Paper.
 pub const PAPER: RGBColor = RGBColor(0xff, 0xff, 0xff);
 

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use shared::piece::Order;
 
 use super::Row;
-use crate::job::{FeedOverride, Job};
+use crate::job::{FeedOverride, Job, Reduction};
 use crate::measure::exact_time;
 use crate::path::Path;
 use crate::plant::Plant;
@@ -114,7 +114,8 @@ pub fn reproduce(mut done: impl FnMut()) -> Result<Reproduction, String> {
 
 /// One run on a copy of `mill`.
 fn experiment(job: &Job, mill: &Plant, weight: f64, reduction: f64) -> Result<Experiment, String> {
-    let by = FeedOverride { weight: Some(weight), reduction: Some(reduction), ..FeedOverride::default() };
+    let by =
+        FeedOverride { weight: Some(weight), reduction: Some(Reduction::Fixed(reduction)), ..FeedOverride::default() };
     let job = job.clone().with_feed(by).map_err(|e| e.to_string())?;
     let path = Path::new(&job, Order::First).map_err(|e| e.to_string())?;
     let mut mill = mill.clone();

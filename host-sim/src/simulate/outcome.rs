@@ -80,6 +80,8 @@ pub struct Outcome {
     pub saturated_ticks: [u64; 2],
     /// The most full steps that a stepping axis fell away from its field: x, y.
     pub lost_steps: [u32; 2],
+    /// Ticks in which a stepping axis was asked for more steps than its pulses allow: x, y.
+    pub overrun_ticks: [u64; 2],
     /// Ticks at the start that the maxima leave out.
     pub settling_ticks: u64,
     /// One number for all setpoints.
@@ -110,6 +112,7 @@ struct Maxima {
     following: [f64; 2],
     saturated: [u64; 2],
     lost_steps: [u32; 2],
+    overrun: [u64; 2],
 }
 
 impl<'a> Gauge<'a> {
@@ -158,6 +161,9 @@ impl<'a> Gauge<'a> {
         self.max.feed = self.max.feed.max(feed);
         for (most, lost) in self.max.lost_steps.iter_mut().zip(measured.lost_steps) {
             *most = (*most).max(lost.unsigned_abs());
+        }
+        for (ticks, overrun) in self.max.overrun.iter_mut().zip(measured.overrun) {
+            *ticks += u64::from(overrun);
         }
         if tick > self.settling {
             for (ticks, saturated) in self.max.saturated.iter_mut().zip(measured.saturated) {
@@ -208,6 +214,7 @@ impl<'a> Gauge<'a> {
             max_following_error: self.max.following.map(length),
             saturated_ticks: self.max.saturated,
             lost_steps: self.max.lost_steps,
+            overrun_ticks: self.max.overrun,
             settling_ticks: self.settling,
             setpoint_hash: format!("{:016x}", run.hash.value()),
             state: run.state.name(),

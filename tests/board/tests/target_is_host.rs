@@ -4,7 +4,7 @@ mod common;
 
 use board::run::run_job;
 use common::{image, root};
-use host_sim::job::{FeedOverride, Job};
+use host_sim::job::{FeedOverride, Job, Reduction};
 use host_sim::path::Path;
 use host_sim::simulate;
 use shared::piece::Order;
@@ -33,7 +33,7 @@ fn published_runs(order: Order) {
     let name = root().join("examples/farouki2018.toml");
     for weight in [0.0, 0.5, 1.0] {
         for reduction in [0.25, 0.5, 0.75, 1.0] {
-            let by = FeedOverride { weight: Some(weight), reduction: Some(reduction), ..FeedOverride::default() };
+            let by = FeedOverride { weight: Some(weight), reduction: Some(Reduction::Fixed(reduction)), ..FeedOverride::default() };
             let job = Job::read(name.to_str().unwrap()).unwrap().with_feed(by).unwrap();
             let ticks = compare(&job, order, &format!("w = {weight}, f = {reduction}, {order:?}"));
             // Some ten seconds of motion: an empty comparison would prove nothing.

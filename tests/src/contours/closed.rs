@@ -49,12 +49,16 @@ pub(super) fn filleted_polygon(random: &mut Random) -> Drawn {
     let corners = around(random, count, 0.4, 1.0);
     let radius = random.scale(0.01, 0.2);
     let share = random.pick(&[0.5, 1.0]);
-    let rounded = (0..count).map(|_| random.chance(share)).collect::<Vec<_>>();
-    Drawn { contour: filleted(&corners, radius, |k| rounded[k]), special: vec![radius, radius, 2.0 * radius] }
+    let second = random.pick(&[1.0, 1.0, 0.5, 2.0]);
+    let radii: Vec<_> = (0..count)
+        .map(|_| if random.chance(share) { radius * if random.chance(0.5) { 1.0 } else { second } } else { 0.0 })
+        .collect();
+    Drawn { contour: filleted(&corners, |k| radii[k]), special: vec![radius, radius, second * radius] }
 }
 
-/// The polygon through `corners` with a fillet at each one that is chosen. Fillets that do not fit make it cross itself.
-fn filleted(corners: &[Complex<f64>], radius: f64, chosen: impl Fn(usize) -> bool) -> crate::Contour {
+/// The polygon through `corners` with a fillet of its own radius at each one; no fillet for the radius zero. Fillets that do
+/// not fit make it cross itself.
+fn filleted(corners: &[Complex<f64>], radius: impl Fn(usize) -> f64) -> crate::Contour {
     let count = corners.len();
     let heading = |k: usize| {
         let chord = corners[(k + 1) % count] - corners[k % count];
@@ -62,7 +66,7 @@ fn filleted(corners: &[Complex<f64>], radius: f64, chosen: impl Fn(usize) -> boo
     };
     let tangent = |k: usize| {
         let turn = (heading(k + count - 1).conj() * heading(k)).arg();
-        if chosen(k % count) { (turn, radius * (0.5 * turn).tan().abs()) } else { (turn, 0.0) }
+        (turn, radius(k % count) * (0.5 * turn).tan().abs())
     };
     let mut chain = Chain::at(corners[0] + heading(0) * tangent(0).1);
     for k in 1..=count {
@@ -182,6 +186,21 @@ pub(super) fn fine_polygon(random: &mut Random) -> Drawn {
         })
         .collect();
     Drawn { contour: Chain::through(&points).close(), special: vec![1.0 - depth] }
+}
+
+/// A wavy ring of many segments of all kinds.
+pub(super) fn many(random: &mut Random) -> Drawn {
+    let count = random.whole(60, 250);
+    let (waves, depth) = (random.whole(2, 9) as f64, random.within(0.05, 0.4));
+    let noise = 0.5 / count as f64;
+    let points: Vec<_> = (0..count)
+        .map(|k| {
+            let angle = TAU * k as f64 / count as f64;
+            unit(angle) * (1.0 + depth * (waves * angle).cos() + noise * random.within(-1.0, 1.0))
+        })
+        .collect();
+    let smooth = random.pick(&[0.0, 0.7, 1.0]);
+    Drawn { contour: mixed(random, &points, true, smooth, 0.0), special: vec![1.0 - depth, TAU / count as f64] }
 }
 
 /// A figure whose edges are cut, some of them into very short segments: nodes that nearly repeat.

@@ -53,6 +53,7 @@ const FAMILIES: &[Family] = &[
     ("gear", closed::gear),
     ("comb", closed::comb),
     ("fine polygon", closed::fine_polygon),
+    ("many segments", closed::many),
     ("tiny segments", closed::tiny_segments),
     ("nearly straight arcs", closed::flat_arcs),
     ("polyomino", tight::polyomino),

@@ -123,6 +123,28 @@ fn pulses_at_a_pin_are_the_same_motion() {
     }
 }
 
+/// The same with all instants in one call; and a pulse is seen from the first middle of an integration step after it.
+#[test]
+fn pulses_at_their_instants_are_the_same_motion() {
+    let fine = StepperAxisModel { step: TICK / 256.0, ..model() };
+    let (mut spread, mut timed) = (StepperAxis::new(fine), StepperAxis::new(fine));
+    let pulses: Vec<Pulse> =
+        (0..16).map(|k| Pulse { instant: (f64::from(k) + 0.5) / 16.0 * TICK, forward: false }).collect();
+    for _ in 0..100 {
+        let one = spread.advance(Command::Steps(-16), TICK);
+        let two = timed.advance_through(&pulses, TICK);
+        assert!((one.position - two.position).abs() < 1e-12, "{one:?} {two:?}");
+        assert_eq!(spread.field(), timed.field());
+    }
+    let rests = |instant: f64| {
+        let mut axis = StepperAxis::new(StepperAxisModel { step: TICK, ..model() });
+        axis.advance_through(&[Pulse { instant, forward: true }], TICK);
+        assert_eq!(axis.field(), 1);
+        axis.rotor().velocity == 0.0
+    };
+    assert!(!rests(0.49 * TICK) && rests(0.51 * TICK));
+}
+
 /// Second order: halving the step quarters the largest difference from a run with very fine steps.
 #[test]
 fn halving_the_step_quarters_the_error() {

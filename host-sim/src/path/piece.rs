@@ -1,0 +1,164 @@
+//! One piece of the exact path, and the same piece as the controller gets it.
+
+use shared::complex::Complex;
+use shared::curve::{Curve as _, Segment};
+use shared::feed::Ramp;
+use shared::fixed::{Position, round_point};
+use shared::piece::{Piece, Shape};
+
+use crate::contour::{Along, Contour};
+
+/// One piece of the exact path.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PathPiece {
+    /// Where on the contour it runs.
+    pub along: Along,
+    /// The curve; for a fill arc the arc itself.
+    pub segment: Segment<f64>,
+    /// The parameter interval.
+    pub interval: [f64; 2],
+    /// The offset distance; 0 on a fill arc, which is its own centre path.
+    pub offset: f64,
+    /// V in mm/s.
+    pub feed: f64,
+    /// The turn of the centre's way into it in radians, positive anticlockwise, where that is a corner.
+    pub start_corner: Option<f64>,
+    /// The turn of the centre's way behind it, where that is a corner.
+    pub end_corner: Option<f64>,
+    /// The ramp at the start.
+    pub start: Option<Ramp<f64>>,
+    /// The ramp at the end.
+    pub end: Option<Ramp<f64>>,
+}
+
+impl PathPiece {
+    /// A part of the offset at `distance`, not slowed down anywhere. None where the contour has no such segment or node.
+    pub(super) fn new(contour: &Contour, along: Along, distance: f64, feed: f64) -> Option<Self> {
+        let (segment, interval, offset) = contour.carrier(along, distance)?;
+        Some(Self {
+            along,
+            segment,
+            interval,
+            offset,
+            feed,
+            start_corner: None,
+            end_corner: None,
+            start: None,
+            end: None,
+        })
+    }
+
+    /// The same over another interval.
+    pub(super) fn over(&self, [from, to]: [f64; 2]) -> Self {
+        let along = match self.along {
+            Along::Segment { segment, .. } => Along::Segment { segment, from, to },
+            Along::Fill { node, .. } => Along::Fill { node, from, to },
+        };
+        Self { along, interval: [from, to], ..*self }
+    }
+
+    /// Whether the contact point rests here.
+    pub fn is_fill(&self) -> bool {
+        matches!(self.along, Along::Fill { .. })
+    }
+
+    /// Whether the centre goes the way of C, and not backwards; the same all over a piece that the controller takes.
+    pub fn is_forward(&self) -> bool {
+        // In the middle, for at an end 1 + kappa d may vanish.
+        1.0 + self.segment.curvature(self.parameter(0.0)) * self.offset >= 0.0
+    }
+
+    /// The direction of the centre's way: that of C, or the opposite one where it goes backwards.
+    pub fn direction(&self, xi: f64) -> Complex<f64> {
+        let tangent = self.segment.tangent(xi);
+        if self.is_forward() { tangent } else { -tangent }
+    }
+
+    /// The parameter on the segment for the local one in -1/2..=1/2.
+    pub fn parameter(&self, tau: f64) -> f64 {
+        let [from, to] = self.interval;
+        0.5 * (from + to) + tau * (to - from)
+    }
+
+    /// The exact point of the tool's centre at a parameter of the segment.
+    pub fn point(&self, xi: f64) -> Complex<f64> {
+        self.segment.offset_point(xi, self.offset)
+    }
+
+    /// |1 + kappa d| of equation (13).
+    pub fn stretch(&self, xi: f64) -> f64 {
+        (1.0 + self.segment.curvature(xi) * self.offset).abs()
+    }
+
+    /// The length on C; none on a fill arc.
+    pub fn contact_length(&self) -> f64 {
+        if self.is_fill() { 0.0 } else { self.segment_length() }
+    }
+
+    /// The length of the segment's part.
+    pub fn segment_length(&self) -> f64 {
+        let [from, to] = self.interval;
+        self.segment.length_to(to) - self.segment.length_to(from)
+    }
+
+    /// The length of the centre's way: |length + d times the turn of the tangent|, from integrating equation (13).
+    pub fn centre_length(&self) -> f64 {
+        (self.segment_length() + self.offset * self.turn()).abs()
+    }
+
+    /// The turn of the tangent along the piece, in radians.
+    fn turn(&self) -> f64 {
+        /// Parts over each of which the tangent turns by less than a half turn.
+        const PARTS: u32 = 64;
+        let [from, to] = self.interval;
+        let mut before = self.segment.tangent(from);
+        (1..=PARTS)
+            .map(|k| {
+                let here = self.segment.tangent(from + (to - from) * f64::from(k) / f64::from(PARTS));
+                let turn = (before.conj() * here).arg();
+                before = here;
+                turn
+            })
+            .sum()
+    }
+
+    /// What the controller gets, in its own precision.
+    pub fn wire(&self, last: Option<Position>) -> Piece<f32> {
+        let exact = self.exact(last);
+        let real = |x: f64| x as f32;
+        let ramp = |ramp: Ramp<f64>| Ramp { length: real(ramp.length), factor: real(ramp.factor) };
+        let shape = match exact.shape {
+            Shape::Ph { preimage, offset } => Shape::Ph { preimage: preimage.map(Complex::from), offset: real(offset) },
+            Shape::Line { chord } => Shape::Line { chord: chord.into() },
+            Shape::Arc { radius, sweep, ratio } => {
+                Shape::Arc { radius: radius.into(), sweep: real(sweep), ratio: real(ratio) }
+            }
+        };
+        Piece {
+            origin: exact.origin,
+            shape,
+            interval: exact.interval.map(real),
+            feed: real(exact.feed),
+            start: exact.start.map(ramp),
+            end: exact.end.map(ramp),
+            further: None,
+            last,
+        }
+    }
+
+    /// The same piece for the f64 twin of the tick; only its origin is rounded.
+    pub fn exact(&self, last: Option<Position>) -> Piece<f64> {
+        let [from, to] = self.interval;
+        let cut = self.segment.cut(from, to, self.offset);
+        Piece {
+            origin: round_point(cut.origin),
+            shape: cut.shape,
+            interval: self.interval,
+            feed: self.feed,
+            start: self.start,
+            end: self.end,
+            further: None,
+            last,
+        }
+    }
+}
