@@ -9,7 +9,7 @@ use shared::complex::Complex;
 
 use super::bury::Cover;
 use super::ground::Ground;
-use super::strand::Untrimmed;
+use super::strand::{Strand, Untrimmed};
 use super::stretch::At;
 use super::trace::{Joint, ROUNDING};
 
@@ -29,19 +29,20 @@ pub fn close(ground: &Ground, untrimmed: &Untrimmed, covers: &[Cover], limit: f6
     let goes_on = |k: usize| lives(next(k)) && lives(k) && untrimmed.strands.get(next(k)).is_some_and(|s| s.follows);
     let [absolute, relative] = UNCERTAIN;
     let certain = limit - absolute.min(relative * limit).max(ROUNDING);
-    let open = |point: Complex<f64>| ground.field.any_nearer(point, certain).is_none();
+    let open = |strand: &Strand, point: Complex<f64>| {
+        !ground.field.any_nearer(point, certain, |stretch| ground.slack(strand.source, stretch))
+    };
     let mut ends: Vec<(usize, At)> = Vec::new();
     let mut starts: Vec<(usize, At)> = Vec::new();
     for k in 0..own {
-        let Some(stretch) = untrimmed.strands.get(k).filter(|_| lives(k)).map(|strand| strand.stretch) else {
-            continue;
-        };
+        let Some(strand) = untrimmed.strands.get(k).filter(|_| lives(k)) else { continue };
+        let stretch = &strand.stretch;
         let free = |number: usize| !ground.contour.closed && number == 0;
-        if !goes_on(k) && !free(next(k)) && open(stretch.end()) {
+        if !goes_on(k) && !free(next(k)) && open(strand, stretch.end()) {
             ends.push((k, stretch.at(0.5)));
         }
         let before = if k > 0 { k - 1 } else { own - 1 };
-        if !goes_on(before) && !free(k) && open(stretch.start()) {
+        if !goes_on(before) && !free(k) && open(strand, stretch.start()) {
             starts.push((k, stretch.at(-0.5)));
         }
     }

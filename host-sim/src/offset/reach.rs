@@ -76,7 +76,7 @@ impl<'a> Reach<'a> {
     /// The radius of the largest tool that touches any point, in the frame's unit; infinite where none is too large.
     pub fn anywhere(&self) -> f64 {
         let best = |strand: &'_ Strand| {
-            let tried = TRIES.map(|tau| (self.disc(strand, tau, UNBOUNDED), tau));
+            let tried = TRIES.map(|tau| (self.disc(strand, tau, f64::INFINITY), tau));
             tried.into_iter().fold((0.0, 0.0), |best, tried| if tried.0 > best.0 { tried } else { best })
         };
         let mut tried: Vec<((f64, f64), &Strand)> = self.strands.iter().map(|s| (best(s), s)).collect();
@@ -94,12 +94,12 @@ impl<'a> Reach<'a> {
             }
             greatest = better;
         }
-        if greatest >= UNBOUNDED { f64::INFINITY } else { greatest }
+        greatest
     }
 
     /// The greatest disc near a place.
     fn widen(&self, strand: &Strand, tau: f64) -> f64 {
-        let disc = |tau: f64| self.disc(strand, tau, UNBOUNDED);
+        let disc = |tau: f64| self.disc(strand, tau, f64::INFINITY);
         let place = golden(|tau| -disc(tau), (tau - APART).max(-0.5), (tau + APART).min(0.5));
         disc(place).max(disc(tau))
     }
@@ -114,17 +114,18 @@ impl<'a> Reach<'a> {
         self.disc(strand, place, least).min(here)
     }
 
-    /// The radius of the largest tangent disc at a place that C bounds, or the least of `most` and [`UNBOUNDED`] if it is no less.
+    /// The radius of the largest tangent disc at a place that C bounds, or `most` if it is no less.
     ///
     /// A disc that holds a point of C shrinks until it touches that point, [Ma, Bae & Choi 2012]; each round is one look-up.
     fn disc(&self, strand: &Strand, tau: f64, most: f64) -> f64 {
         let at = strand.stretch.at(tau);
         let normal = at.tangent.right() * self.side;
         let point = at.point - normal * GRAZING;
-        let mut radius = match strand.source {
-            Source::Segment(_) => most.min(UNBOUNDED).min(self.bend(&strand.stretch.with_offset(0.0), tau)),
-            _ => most.min(UNBOUNDED),
+        let free = match strand.source {
+            Source::Segment(_) => most.min(self.bend(&strand.stretch.with_offset(0.0), tau)),
+            _ => most,
         };
+        let mut radius = free.min(UNBOUNDED);
         for _ in 0..64 {
             let centre = point + normal * radius;
             let Some((number, foot)) = self.ground.field.nearest(centre, radius * (1.0 - 1e-13)) else { break };
@@ -136,7 +137,7 @@ impl<'a> Reach<'a> {
             }
             radius = less;
         }
-        radius
+        if radius < UNBOUNDED { radius } else { free }
     }
 
     /// The radius of curvature where C bends around the tool, else infinite.

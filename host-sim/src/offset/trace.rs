@@ -257,7 +257,8 @@ impl Tracer<'_> {
             shares.iter().all(|share| {
                 let Some(strand) = self.untrimmed.strands.get(k) else { return false };
                 let point = strand.stretch.at(from + (to - from) * share).point;
-                self.ground.field.any_nearer(point, self.limit - ROUNDING).is_none()
+                let slack = |stretch: usize| self.ground.slack(strand.source, stretch);
+                !self.ground.field.any_nearer(point, self.limit - ROUNDING, slack)
             })
         });
         whole && count > 0
