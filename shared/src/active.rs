@@ -34,12 +34,12 @@ pub struct ActivePiece<T, const F: usize = 1> {
     /// The knots of F as parameters tau.
     knots: [T; 2],
     /// Into how many equal parts order "exact" divides a tick on this piece, and the inverse of that number.
-    substeps: (u32, T),
+    substeps: u8,
+    substep: T,
     /// The rate of (21) at the start, which a tick that crosses a node needs besides that of its end.
     start_rate: T,
     /// A bound of the inverse of the rate from below, in s.
     least_slowness: T,
-    duration: T,
     until: PathTime,
     goes_on: bool,
     further: Option<Linear<T, F>>,
@@ -103,10 +103,10 @@ impl<T: Real, const F: usize> ActivePiece<T, F> {
             law,
             origin: piece.origin,
             knots: [T::ZERO; 2],
-            substeps: (1, T::ONE),
+            substeps: 1,
+            substep: T::ONE,
             start_rate: T::ZERO,
             least_slowness: T::ZERO,
-            duration: T::ZERO,
             until: PathTime::START,
             goes_on: false,
             further,
@@ -116,16 +116,16 @@ impl<T: Real, const F: usize> ActivePiece<T, F> {
         active.knots = law.knots().map(|u| active.tau_at(u));
         let fastest = active.fastest();
         active.substeps = active.choose_substeps(fastest * tick);
+        active.substep = T::ONE / T::from_int(i32::from(active.substeps));
         active.start_rate = active.rate(-T::HALF);
         active.least_slowness = T::ONE / fastest;
-        active.duration = duration::of(&active);
-        active.until = PathTime::START.after(active.duration);
+        active.until = PathTime::after(duration::of(&active));
         Ok(active)
     }
 
     /// The same as a part of a path: behind pieces that end at `before`. Load time.
     pub fn behind(self, before: PathTime) -> Self {
-        Self { until: before.after(self.duration), ..self }
+        Self { until: before.and(self.until), ..self }
     }
 
     /// The same as the end of a path that ends at its feed, for which the pace need not come to 0. Load time.
@@ -209,12 +209,6 @@ impl<T: Real, const F: usize> ActivePiece<T, F> {
         self.least_slowness
     }
 
-    /// The path time of the piece in s: the integral of (21), as exact as [`duration`] says.
-    #[inline(always)]
-    pub fn duration(&self) -> T {
-        self.duration
-    }
-
     /// The path time at which the piece ends.
     #[inline(always)]
     pub fn until(&self) -> PathTime {
@@ -254,7 +248,7 @@ impl<T: Real, const F: usize> ActivePiece<T, F> {
 
     /// Into how many parts order "exact" divides a tick here, and the inverse of that number.
     pub fn substeps(&self) -> (u32, T) {
-        self.substeps
+        (u32::from(self.substeps), self.substep)
     }
 
     /// The machine coordinates of a point that is relative to the origin.
@@ -315,10 +309,9 @@ impl<T: Real, const F: usize> ActivePiece<T, F> {
 
     /// As many as keep a substep to a quarter of a ramp and a sixteenth of a piece at its fastest, where the Gauss rule is exact to
     /// rounding; 8 at most, so that the tick stays bounded. `share` is the part of the piece that a tick covers at its fastest.
-    fn choose_substeps(&self, share: T) -> (u32, T) {
+    fn choose_substeps(&self, share: T) -> u8 {
         let wanted = share * T::lit(16.0).most(T::lit(4.0) / self.law.shortest_ramp());
-        let count = (wanted + T::HALF).least(T::lit(8.0)).to_int().clamp(1, 8);
-        (count.unsigned_abs(), T::ONE / T::from_int(count))
+        (wanted + T::HALF).least(T::lit(8.0)).to_int().clamp(1, 8) as u8
     }
 }
 

@@ -62,7 +62,7 @@ fn panels<T: Real, const F: usize>(piece: &ActivePiece<T, F>, from: T, width: T,
 }
 
 /// A stretch in one panel.
-#[inline(always)]
+#[inline(never)]
 fn panel<T: Real, const F: usize>(piece: &ActivePiece<T, F>, from: T, width: T) -> T {
     T::GAUSS.iter().fold(T::ZERO, |sum, &(x, weight)| sum + weight / piece.rate(from + x * width)) * width
 }

@@ -57,6 +57,8 @@ pub struct Executor<T, const F: usize = 1> {
     wanted: Target<T>,
     single_block: bool,
     active: Option<ActivePiece<T, F>>,
+    /// The path time of a tick while the pace is steady; 0 where the next tick has to look at anything but its way.
+    steady: T,
     /// Whether the next tick begins with the next piece.
     at_node: bool,
     entered: u32,
@@ -65,12 +67,6 @@ pub struct Executor<T, const F: usize = 1> {
     point: Complex<T>,
     setpoint: Setpoint<F>,
     spare: T,
-}
-
-/// What the table says of `event`, or nothing.
-#[inline(never)]
-fn follow(state: &mut State, event: Event) {
-    *state = state.after(event).unwrap_or(*state);
 }
 
 impl<T: Real> Executor<T> {
@@ -111,6 +107,7 @@ impl<T: Real, const F: usize> Executor<T, F> {
             wanted: pacer.unity_as_target(),
             single_block: false,
             active: None,
+            steady: T::ZERO,
             at_node: true,
             entered: 0,
             tau: Accumulator::new(T::ZERO),
@@ -157,10 +154,12 @@ impl<T: Real, const F: usize> Executor<T, F> {
             MotionCommand::Override { percent } => {
                 self.percent = percent;
                 self.wanted = self.pacer.target(percent);
+                self.steady = T::ZERO;
                 return Ok(());
             }
             MotionCommand::SingleBlock(on) => {
                 self.single_block = on;
+                self.steady = T::ZERO;
                 return Ok(());
             }
             MotionCommand::Hold => Event::Hold,
@@ -172,6 +171,7 @@ impl<T: Real, const F: usize> Executor<T, F> {
             return Err(CommandError::FixedPace);
         }
         self.state = next;
+        self.steady = T::ZERO;
         Ok(())
     }
 
@@ -180,48 +180,60 @@ impl<T: Real, const F: usize> Executor<T, F> {
     /// Bounded by [`NODES_PER_TICK`] pieces; no panic, no lock, no allocation.
     #[inline(always)]
     pub fn step(&mut self, pieces: &mut impl Pieces<T, F>) -> Setpoint<F> {
-        if self.state.is_moving() {
-            self.walk(pieces);
-            if self.state == State::Cancelled {
-                pieces.discard();
-            }
+        let (mut time, mut entered) = (self.steady, 0);
+        if time == T::ZERO || self.least_way(pieces) < self.wanted.ample() {
+            let Some(changed) = self.change_pace(pieces) else { return self.setpoint };
+            (time, entered) = changed;
+        }
+        let Some(piece) = &self.active else { return self.setpoint };
+        if let Some(left) = advance(piece, &mut self.tau, self.rate, self.order, time)
+            && !self.cross_nodes(pieces, left, time, entered)
+        {
+            return self.setpoint;
+        }
+        self.place_setpoint();
+        if self.steady == T::ZERO {
+            self.settle(pieces);
         }
         self.setpoint
     }
 
+    /// A bound from below of the way that is left, in s of path time.
     #[inline(always)]
-    fn walk(&mut self, pieces: &mut impl Pieces<T, F>) {
-        let mut entered = 0;
-        if self.at_node {
-            if !self.enter_first(pieces) {
-                return;
-            }
-            entered = 1;
+    fn least_way(&self, pieces: &impl Pieces<T, F>) -> T {
+        let Some(piece) = &self.active else { return T::ZERO };
+        self.tau.left_to(T::HALF) * piece.least_slowness() + self.beyond(piece, pieces)
+    }
+
+    /// What a tick does before it moves, unless the pace is steady and the way ample. Returns the path time to move by and how many
+    /// pieces were entered; none where nothing moves.
+    #[inline(never)]
+    fn change_pace(&mut self, pieces: &mut impl Pieces<T, F>) -> Option<(T, u32)> {
+        if !self.state.is_moving() {
+            return None;
         }
-        let Some(piece) = &self.active else { return };
-        let beyond = self.beyond(piece, pieces);
-        let least_way = self.tau.left_to(T::HALF) * piece.least_slowness() + beyond;
+        let entered = u32::from(self.at_node);
+        if self.at_node && !self.enter_first(pieces) {
+            return None;
+        }
+        let least_way = self.least_way(pieces);
+        let piece = self.active.as_ref()?;
         let target = if self.state.is_stopping() { Target::REST } else { self.wanted };
-        let way = || duration::of_rest(piece, &self.tau) + beyond;
-        let stride = self.pacer.step(&mut self.pace, &target, least_way, way);
+        let way = || duration::of_rest(piece, &self.tau) + self.beyond(piece, pieces);
+        let mut pace = self.pace;
+        let stride = self.pacer.step(&mut pace, &target, least_way, way);
+        self.pace = pace;
         if stride.short != (self.state == State::Braking) {
-            follow(&mut self.state, if stride.short { Event::Short } else { Event::Ample });
+            self.happen(if stride.short { Event::Short } else { Event::Ample });
         }
         if stride.steps == 0 {
-            self.stand(beyond);
-            return;
+            self.stand(pieces);
+            return None;
         }
         let time = self.pacer.time(stride);
-        if let Some(left) = advance(piece, &mut self.tau, self.rate, self.order, time) {
-            self.cross_nodes(pieces, left, time, entered);
-        }
-        if self.state == State::Finished {
-            return;
-        }
-        self.place_setpoint();
-        if self.pace.is_rest() && self.state.is_stopping() {
-            self.come_to_rest();
-        }
+        let steady = !self.state.is_stopping() && self.pacer.is_steady(&self.pace, &target);
+        self.steady = if steady { time } else { T::ZERO };
+        Some((time, entered))
     }
 
     /// The path time in s for which there is way beyond the piece: none where blocks are run one by one, else what is queued.
@@ -249,15 +261,15 @@ impl<T: Real, const F: usize> Executor<T, F> {
         }
     }
 
+    /// What the table says of `event`, or nothing.
     fn happen(&mut self, event: Event) {
-        follow(&mut self.state, event);
+        self.state = self.state.after(event).unwrap_or(self.state);
     }
 
     /// From a node into the next piece, in the tick after the node was reached. Returns whether there is one to walk on.
-    #[inline(never)]
     fn enter_first(&mut self, pieces: &mut impl Pieces<T, F>) -> bool {
         if self.state.is_stopping() && self.pace.is_rest() {
-            self.come_to_rest();
+            self.settle(pieces);
             return false;
         }
         let found = self.enter(pieces);
@@ -285,40 +297,47 @@ impl<T: Real, const F: usize> Executor<T, F> {
     }
 
     /// From the end of a piece into the next ones, with the path time `left` of `time`; `entered` pieces were entered in this tick
-    /// before.
+    /// before. Returns whether the setpoint is to be found where the tick has come to: not at the end of the path.
     #[inline(never)]
-    fn cross_nodes(&mut self, pieces: &mut impl Pieces<T, F>, mut left: T, time: T, entered: u32) {
+    fn cross_nodes(&mut self, pieces: &mut impl Pieces<T, F>, mut left: T, time: T, entered: u32) -> bool {
         for _ in entered..NODES_PER_TICK {
-            if self.active.as_ref().is_some_and(|piece| piece.last().is_some()) {
+            let Some(piece) = &self.active else { return false };
+            if piece.last().is_some() {
                 self.finish(left * (self.tick / time));
-                return;
+                return false;
             }
-            self.stop_at_node();
             if self.single_block && self.pacer.may_end(&self.pace) {
                 self.pace = Pace::REST;
+                self.stop_at_node();
                 self.happen(Event::Block);
-                return;
+                return true;
+            }
+            // Where the next piece does not move them, further axes stay as this one ends.
+            if let Some(further) = piece.further_end() {
+                self.setpoint.further = further;
             }
             if !self.enter(pieces) {
                 self.run_dry();
-                return;
+                return true;
             }
-            let Some(piece) = &self.active else { return };
+            let Some(piece) = &self.active else { return false };
             match advance(piece, &mut self.tau, self.rate, self.order, left) {
-                None => return,
+                None => return true,
                 Some(rest) => left = rest,
             }
         }
         // More nodes than a tick may cross: the rest of the time is given up, and the next tick begins at this node.
         self.stop_at_node();
+        true
     }
 
-    /// The end of the piece, with nothing left of it. Where the next one does not move them, further axes stay as this one ends.
+    /// The end of the piece; the next tick begins with the next one.
     fn stop_at_node(&mut self) {
         if let Some(further) = self.active.as_ref().and_then(ActivePiece::further_end) {
             self.setpoint.further = further;
         }
         self.tau = Accumulator::new(T::HALF);
+        self.steady = T::ZERO;
         self.at_node = true;
     }
 
@@ -334,8 +353,7 @@ impl<T: Real, const F: usize> Executor<T, F> {
 
     /// At the last point, with `spare` s of the tick left.
     fn finish(&mut self, spare: T) {
-        let Some(piece) = &self.active else { return };
-        if let Some([x, y, _]) = piece.last() {
+        if let Some([x, y, _]) = self.active.as_ref().and_then(ActivePiece::last) {
             self.setpoint.plane = [x, y];
         }
         self.spare = spare;
@@ -345,28 +363,36 @@ impl<T: Real, const F: usize> Executor<T, F> {
     }
 
     /// A tick that does not move: at rest, as it was asked for, or because the way has come to its end.
-    #[inline(never)]
-    fn stand(&mut self, beyond: T) {
-        let Some(piece) = &self.active else { return };
+    fn stand(&mut self, pieces: &mut impl Pieces<T, F>) {
         if self.state.is_stopping() {
-            self.come_to_rest();
-        } else if self.pacer.is_nothing(duration::of_rest(piece, &self.tau) + beyond) {
-            if piece.last().is_some() {
-                self.finish(T::ZERO);
-                return;
-            }
-            self.stop_at_node();
-            self.place_setpoint();
-            if self.single_block {
-                self.happen(Event::Block);
-            }
+            self.settle(pieces);
+            return;
+        }
+        let Some(piece) = &self.active else { return };
+        if !self.pacer.is_nothing(duration::of_rest(piece, &self.tau) + self.beyond(piece, pieces)) {
+            return;
+        }
+        if piece.last().is_some() {
+            self.finish(T::ZERO);
+            return;
+        }
+        self.stop_at_node();
+        self.place_setpoint();
+        if self.single_block {
+            self.happen(Event::Block);
         }
     }
 
-    /// The pace has come to 0 because it should.
-    fn come_to_rest(&mut self) {
-        self.pace = Pace::REST;
-        self.happen(Event::AtRest);
+    /// At the end of a tick whose pace was not steady: whether it has come to 0 because it should.
+    #[inline(never)]
+    fn settle(&mut self, pieces: &mut impl Pieces<T, F>) {
+        if self.pace.is_rest() && self.state.is_stopping() {
+            self.pace = Pace::REST;
+            self.happen(Event::AtRest);
+        }
+        if self.state == State::Cancelled {
+            pieces.discard();
+        }
     }
 
     /// What the executor is about.

@@ -29,10 +29,15 @@ impl PathTime {
     /// The start of a path.
     pub const START: Self = Self(0);
 
-    /// After a further piece of `duration` s. Load time.
-    pub fn after<T: Real>(self, duration: T) -> Self {
+    /// After a piece of `duration` s. Load time.
+    pub fn after<T: Real>(duration: T) -> Self {
         let units = (duration.least(T::lit(8.0)) * T::lit(UNITS_PER_S) - T::HALF).to_int();
-        Self(self.0.wrapping_add(units.unsigned_abs().min(MOST_UNITS)))
+        Self(units.max(0).unsigned_abs().min(MOST_UNITS))
+    }
+
+    /// After this and then `other`. Load time.
+    pub fn and(self, other: Self) -> Self {
+        Self(self.0.wrapping_add(other.0))
     }
 
     /// After a path that does not come to rest at its end: as if it went on for 8 s.

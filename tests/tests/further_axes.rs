@@ -1,6 +1,7 @@
 //! Axes beside the plane move with a piece, linearly in its arc length.
 #![allow(clippy::unwrap_used, reason = "a failed test says where")]
 
+use shared::duration;
 use shared::error::PathError;
 use shared::executor::{Executor, State};
 use shared::fixed::{Fixed, REACH_MM, UNITS_PER_MM};
@@ -117,7 +118,7 @@ fn a_plunge_is_a_line_of_its_own_length() {
     let (motion, active) = prepare(&header::<f32>(0.5, Order::First), &pieces).unwrap();
     // 8 mm at 10 mm/s and 25 mm at 50 mm/s.
     for (piece, seconds) in active.iter().zip([0.8, 0.5, 0.8]) {
-        assert!((piece.duration() - seconds).abs() < 1e-6, "{}", piece.duration());
+        assert!((duration::of(piece) - seconds).abs() < 1e-6, "{}", duration::of(piece));
     }
     let mut stock = Stock::full(&active);
     let mut executor = Executor::new(shared::TICK, [Fixed(0), Fixed(0), at(5.0)]);

@@ -1,6 +1,7 @@
 //! Starts and stops against their closed forms; durations of pieces against the integral.
 #![allow(clippy::unwrap_used, reason = "a failed test says where")]
 
+use shared::duration;
 use shared::executor::{Executor, State};
 use shared::fixed::{Fixed, UNITS_PER_MM};
 use shared::motion::MotionCommand;
@@ -118,7 +119,7 @@ fn durations_are_the_integral() {
                 let exact = draft.duration(weight);
                 let single = prepare(&header::<f32>(weight, Order::First), &pieces(&[draft])).unwrap().1;
                 let double = prepare(&header::<f64>(weight, Order::First), &pieces(&[draft])).unwrap().1;
-                let off = [f64::from(single[0].duration()) / exact - 1.0, double[0].duration() / exact - 1.0];
+                let off = [f64::from(duration::of(&single[0])) / exact - 1.0, duration::of(&double[0]) / exact - 1.0];
                 worst = [worst[0].max(off[0].abs()), worst[1].max(off[1].abs())];
                 assert!(off[0].abs() < 1e-6 && off[1].abs() < 2e-10, "curve {number}, f {factor}, d {offset}: {off:?}");
             }
