@@ -10,6 +10,7 @@
 //! | [`offset`] | the exact trimmed offset of a contour |
 //! | [`job`] | what a person wants: contour, offset, feed; the contour form |
 //! | [`path`] | the exact curves of the tool's centre in f64, and the pieces that a controller gets of them |
+//! | [`pacing`] | how fast the pace of a path may change within what the axes bear |
 //! | [`prepare`] | a checked job as bytes, for a sender |
 //! | [`plant`] | motors, screws, friction, encoders: what hangs on the axes |
 //! | [`simulate`] | the tick of `shared` over a path, with or without a plant |
@@ -23,6 +24,7 @@ pub mod input;
 pub mod job;
 pub mod measure;
 pub mod offset;
+pub mod pacing;
 pub mod path;
 pub mod plant;
 pub mod prepare;

@@ -80,6 +80,22 @@ pub enum PathError {
     AfterLast,
     /// The path has no pieces.
     Empty,
+    /// Limits of the pace that are no positive numbers, or a largest pace outside 1..=2.
+    Pace {
+        /// The largest |q'|, in 1/s.
+        slope: f32,
+        /// The largest |q''|, in 1/s^2.
+        bend: f32,
+        /// The largest q.
+        most: f32,
+    },
+    /// With these limits of the pace a stop would take too long.
+    SlowStop {
+        /// The largest |q'|, in 1/s.
+        slope: f32,
+        /// The largest |q''|, in 1/s^2.
+        bend: f32,
+    },
 }
 
 impl fmt::Display for PathError {
@@ -112,6 +128,18 @@ impl fmt::Display for PathError {
             Self::LastPoint { width } => write!(f, "the last point is {width} mm away from where the last piece ends"),
             Self::AfterLast => write!(f, "a piece follows the one that was called the last"),
             Self::Empty => write!(f, "the path has no pieces"),
+            Self::Pace { slope, bend, most } => {
+                write!(
+                    f,
+                    "the pace is limited to {slope}/s, {bend}/s2 and {most}; it needs rates above zero and 1 to 2 at most"
+                )
+            }
+            Self::SlowStop { slope, bend } => {
+                write!(
+                    f,
+                    "a pace that changes by {slope}/s and {bend}/s2 would stop too slowly; 0.6/s and 6/s2 are enough"
+                )
+            }
         }
     }
 }

@@ -3,6 +3,7 @@
 mod motion;
 mod offset;
 mod output;
+mod pacing;
 mod prepare;
 mod reproduce;
 mod simulate;

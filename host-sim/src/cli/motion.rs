@@ -31,6 +31,8 @@ pub struct Motion {
     /// How a tick integrates the feed law
     #[arg(long, value_enum, default_value_t = OrderName::First)]
     order: OrderName,
+    #[command(flatten)]
+    pacing: super::pacing::Pacing,
 }
 
 /// The interpolator's order as it is written.
@@ -61,7 +63,7 @@ impl Motion {
             OrderName::Third => Order::Third,
             OrderName::Exact => Order::Exact,
         };
-        let path = Path::new(&job, order)?;
+        let path = self.pacing.apply(Path::new(&job, order)?, &job)?;
         Ok((job, path))
     }
 }
