@@ -134,6 +134,11 @@ impl Controller {
         self.machine.executor.state()
     }
 
+    /// The setpoint of the last tick.
+    pub fn setpoint(&self) -> Position {
+        self.machine.executor.setpoint()
+    }
+
     /// How many pieces were accepted since it was made.
     pub fn loaded(&self) -> u64 {
         self.machine.loaded

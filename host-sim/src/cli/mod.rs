@@ -1,5 +1,6 @@
 //! The command line: one module a verb, each a thin reader of a result that the library computes.
 
+mod monitor;
 mod motion;
 mod offset;
 mod output;
@@ -7,6 +8,7 @@ mod pacing;
 mod prepare;
 mod reproduce;
 mod simulate;
+mod stream;
 
 use std::fmt;
 use std::process::ExitCode;
@@ -34,6 +36,8 @@ enum Verb {
     Offset(offset::OffsetVerb),
     Reproduce(reproduce::Reproduce),
     Prepare(prepare::Prepare),
+    Stream(stream::Stream),
+    Monitor(monitor::Monitor),
 }
 
 impl Cli {
@@ -44,6 +48,8 @@ impl Cli {
             Verb::Offset(verb) => verb.run(),
             Verb::Reproduce(verb) => verb.run(),
             Verb::Prepare(verb) => verb.run(),
+            Verb::Stream(verb) => verb.run(),
+            Verb::Monitor(verb) => verb.run(),
         }
     }
 }
