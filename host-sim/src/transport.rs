@@ -33,9 +33,7 @@ pub fn open(port: &str, baud: u32) -> Result<Box<dyn Transport>, InputError> {
     }
     match serialport::new(port, baud).timeout(SLICE).open() {
         Ok(serial) => Ok(Box::new(Serial(serial))),
-        Err(error)
-            if matches!(error.kind(), serialport::ErrorKind::NoDevice) && !std::path::Path::new(port).exists() =>
-        {
+        Err(_) if !std::path::Path::new(port).exists() => {
             Err(refused(&"there is no such port; name a serial port or tcp:HOST:PORT"))
         }
         // A pseudo-terminal does not know every setting of a serial port.
