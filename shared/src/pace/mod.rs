@@ -249,11 +249,15 @@ impl<T: Real> Pacer<T> {
     /// said to be is met as closely as a stop at the limits can.
     #[inline(always)]
     pub fn step(&self, pace: &mut Pace, target: &Target<T>, least_way: T, way: impl FnOnce() -> T) -> Stride {
-        let enough = if self.is_steady(pace, target) { target.ample } else { self.ample };
-        let way = if least_way < enough { way() } else { self.ample };
+        let steady = self.is_steady(pace, target);
+        if steady && least_way >= target.ample {
+            return Stride { steps: 2 * pace.level, short: false };
+        }
+        let way = if least_way < self.ample { way() } else { self.ample };
         self.change(pace, target.level, way)
     }
 
+    #[inline(never)]
     fn change(&self, pace: &mut Pace, target: i32, way: T) -> Stride {
         let Pace { level, slope } = *pace;
         let wanted = self.towards(level, slope, target);
