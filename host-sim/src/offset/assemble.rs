@@ -228,6 +228,13 @@ fn finish(contour: &Contour, ground: &Ground, drafts: Vec<Draft>, closed: bool, 
             Source::Border => continue,
         };
         let (curve, _, d) = contour.carrier(along, distance)?;
+        // Of a very short segment the turned frame may round the direction, and see a gap at a node that has none.
+        if let Segment::Arc(arc) = curve
+            && matches!(along, Along::Fill { .. })
+            && arc.sweep * distance <= 0.0
+        {
+            continue;
+        }
         let [start, end] = [from, to].map(|xi| curve.offset_point(xi, d));
         pieces.push(Piece { along, start, end, start_turn: 0.0, end_turn: 0.0 });
         tangents.push([from, to].map(|xi| curve.tangent(xi)));
@@ -235,6 +242,9 @@ fn finish(contour: &Contour, ground: &Ground, drafts: Vec<Draft>, closed: bool, 
         area += draft.area;
     }
     // The sweep of a fill arc of the other side would be negative; the tool runs on forwards all the same.
+    if pieces.is_empty() {
+        return None;
+    }
     let count = pieces.len();
     for k in 0..count {
         let next = (k + 1) % count;
