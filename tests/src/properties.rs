@@ -15,6 +15,8 @@ use crate::winding::Polygon;
 
 /// The project's bar for clearances, gaps and trim points, relative to |d| or to the size.
 const BAR: f64 = 1e-9;
+/// The largest tool is told so exactly, relatively.
+const LARGEST: f64 = 1e-7;
 /// Lengths and areas against quadrature, relative.
 const MEASURES: f64 = 1e-7;
 /// What lengths and areas may be wrong by at least, in parts of the size and of its square: a loop that nearly vanishes is a
@@ -350,7 +352,7 @@ fn check_empty(contour: &Contour, distance: f64, largest: f64, samples: usize) -
     if reach > d * (1.0 + BAR) {
         return failure("wrongly empty", format!("a tool of {} |d| touches", reach / d));
     }
-    if largest.is_nan() || largest > d * (1.0 + BAR) || reach > largest * (1.0 + BAR) {
+    if largest.is_nan() || largest > d * (1.0 + BAR) || reach > largest * (1.0 + LARGEST) {
         return failure("largest", format!("{largest} at |d| = {d}, but a tool of {reach} touches"));
     }
     let smaller = largest * distance.signum() * (1.0 - 1e-6);
