@@ -1,5 +1,6 @@
 //! Independent measurements of a motion: nothing here asks the kernel.
 
+mod bounds;
 mod clearance;
 mod foot_point;
 mod integral;
