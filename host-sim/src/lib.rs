@@ -10,6 +10,7 @@
 //! | [`offset`] | the exact trimmed offset of a contour |
 //! | [`job`] | what a person wants: contour, offset, feed; the contour form |
 //! | [`path`] | the exact curves of the tool's centre in f64, and the pieces that a controller gets of them |
+//! | [`machine`] | a machine's file, and what a controller makes of it |
 //! | [`prepare`] | a checked job as bytes, for a sender |
 //! | [`plant`] | motors, screws, friction, encoders: what hangs on the axes |
 //! | [`simulate`] | the tick of `shared` over a path, with or without a plant |
@@ -21,6 +22,7 @@
 pub mod contour;
 pub mod input;
 pub mod job;
+pub mod machine;
 pub mod measure;
 pub mod offset;
 pub mod path;

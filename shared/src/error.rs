@@ -80,7 +80,17 @@ pub enum PathError {
     AfterLast,
     /// The path has no pieces.
     Empty,
+    /// A piece leaves the travel of an axis.
+    SoftLimit {
+        /// Which axis, from 0.
+        axis: u8,
+        /// By how much, in mm: above zero at the high end, below zero at the low one.
+        beyond: f32,
+    },
 }
+
+/// The axes of a piece, as people call them.
+const AXIS_NAMES: [&str; 3] = ["x", "y", "z"];
 
 impl fmt::Display for PathError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -112,6 +122,15 @@ impl fmt::Display for PathError {
             Self::LastPoint { width } => write!(f, "the last point is {width} mm away from where the last piece ends"),
             Self::AfterLast => write!(f, "a piece follows the one that was called the last"),
             Self::Empty => write!(f, "the path has no pieces"),
+            Self::SoftLimit { axis, beyond } => {
+                let (end, name) =
+                    (if beyond < 0.0 { "low" } else { "high" }, AXIS_NAMES.get(usize::from(axis)).unwrap_or(&"?"));
+                let by = beyond.max(-beyond);
+                write!(
+                    f,
+                    "the piece leaves the travel of axis {name} by {by} mm at its {end} end; move the part or the travel"
+                )
+            }
         }
     }
 }

@@ -3,6 +3,7 @@
 //! A setpoint's way through this crate: a [`curve::Segment`] is cut into a [`piece::Piece`], which travels over the [`link`]; the
 //! [`loader`] checks it and makes the [`active::ActivePiece`] that the [`executor`] walks, moved by the [`interpolator`] under
 //! the [`feed`] law; a [`servo`] turns setpoint and encoder into a command, or [`steps`] turns setpoints into the pulses of a tick.
+//! [`safety`] decides in every tick whether any of it may move.
 //!
 //! This crate knows no clock, no log, no heap and no board; time and inputs are arguments. All of it is generic over
 //! [`real::Real`]: `f32` on the target and in the simulator, bit for bit the same, and `f64` as the oracle of the same code.
@@ -20,16 +21,20 @@ pub mod complex;
 pub mod curve;
 pub mod error;
 pub mod executor;
+pub mod extent;
 pub mod feed;
 pub mod fixed;
 pub mod hash;
+pub mod homing;
 pub mod interpolator;
 pub mod jet;
 pub mod link;
 pub mod loader;
+pub mod machine;
 pub mod piece;
 pub mod polynomial;
 pub mod real;
+pub mod safety;
 pub mod servo;
 pub mod steps;
 

@@ -5,6 +5,7 @@
 use crate::active::ActivePiece;
 use crate::complex::Complex;
 use crate::error::PathError;
+use crate::extent::SoftLimits;
 use crate::fixed::Fixed;
 use crate::piece::{Header, Piece};
 use crate::real::Real;
@@ -14,6 +15,7 @@ use crate::real::Real;
 pub struct Loader<T> {
     header: Header<T>,
     tick: T,
+    limits: Option<SoftLimits>,
     start: Option<[Fixed; 2]>,
     end: [Fixed; 2],
     finished: bool,
@@ -28,7 +30,13 @@ impl<T: Real> Loader<T> {
         if !(header.tolerance > T::ZERO && header.tolerance.is_finite()) {
             return Err(PathError::Tolerance { tolerance: header.tolerance.to_f32() });
         }
-        Ok(Self { header: *header, tick, start: None, end: [Fixed(0); 2], finished: false })
+        Ok(Self { header: *header, tick, limits: None, start: None, end: [Fixed(0); 2], finished: false })
+    }
+
+    /// This path, refused where a piece of it leaves the machine's travel.
+    pub fn within(mut self, limits: SoftLimits) -> Self {
+        self.limits = Some(limits);
+        self
     }
 
     /// Checks the next piece of the path and prepares it. On an error nothing is taken over, and the path is at its end.
@@ -37,6 +45,9 @@ impl<T: Real> Loader<T> {
             return Err(PathError::AfterLast);
         }
         let active = ActivePiece::activate(piece, self.header.weight, self.tick)?;
+        if let Some(limits) = self.limits {
+            limits.check(piece)?;
+        }
         let start = active.place(active.point_and_rate(-T::HALF).0);
         let end = active.place(active.point_and_rate(T::HALF).0);
         if self.start.is_some()

@@ -344,7 +344,7 @@ fn check_topology(contour: &Contour, offset: &Offset) -> Result<(), Failure> {
 }
 
 /// Nothing may be left only if no point of C can be touched; and then a tool of the size that is told as the largest must leave
-/// nothing either, but one that is a millionth smaller something.
+/// nothing either, but one that is a hundred-thousandth smaller something.
 fn check_empty(contour: &Contour, distance: f64, largest: f64, samples: usize) -> Result<(), Failure> {
     let none = |distance: f64| Offset { distance, loops: Vec::new() };
     let d = distance.abs();
@@ -355,10 +355,15 @@ fn check_empty(contour: &Contour, distance: f64, largest: f64, samples: usize) -
     if largest.is_nan() || largest > d * (1.0 + BAR) || reach > largest * (1.0 + LARGEST) {
         return failure("largest", format!("{largest} at |d| = {d}, but a tool of {reach} touches"));
     }
-    let smaller = largest * distance.signum() * (1.0 - 1e-6);
-    match trim(contour, smaller) {
+    // A loop that is left a hundred-thousandth below the largest tool is as small: behind a neck narrower than 1e-9 of the size its
+    // ends are known to some 1e-8 of |d| only, so its clearance is judged a thousandth below.
+    let smaller = |part: f64| largest * distance.signum() * (1.0 - part);
+    if let Err(error) = trim(contour, smaller(1e-5)) {
+        return failure("largest", format!("{largest} at |d| = {d}, but at a hundred-thousandth less: {error:?}"));
+    }
+    match trim(contour, smaller(1e-3)) {
         Ok(offset) => check_clearance(contour, &offset, samples)
-            .or_else(|found| failure("largest", format!("{largest} at |d| = {d}, but at a millionth less {found}"))),
-        Err(error) => failure("largest", format!("{largest} at |d| = {d}, but at a millionth less: {error:?}")),
+            .or_else(|found| failure("largest", format!("{largest} at |d| = {d}, but at a thousandth less {found}"))),
+        Err(error) => failure("largest", format!("{largest} at |d| = {d}, but at a thousandth less: {error:?}")),
     }
 }

@@ -16,7 +16,10 @@ const SEEDS: u64 = 2_500;
 const LISTED: usize = 10;
 
 /// Seeds that failed once. They stay.
-const FAILED_ONCE: &[u64] = &[];
+const FAILED_ONCE: &[u64] = &[
+    41, 234, 489, 584, 852, 865, 954, 1320, 1533, 1837, 2593, 2998, 4496, 5234, 9524, 9621, 11043, 12118, 12184, 13621,
+    14421, 15056, 18226, 19285,
+];
 
 /// Checks all seeds, and says which ones fail, and of what.
 fn check_all(seeds: impl Iterator<Item = u64>) {

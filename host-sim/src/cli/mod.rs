@@ -1,5 +1,6 @@
 //! The command line: one module a verb, each a thin reader of a result that the library computes.
 
+mod machine;
 mod motion;
 mod offset;
 mod output;
@@ -33,6 +34,7 @@ enum Verb {
     Offset(offset::OffsetVerb),
     Reproduce(reproduce::Reproduce),
     Prepare(prepare::Prepare),
+    Machine(machine::MachineVerb),
 }
 
 impl Cli {
@@ -43,6 +45,7 @@ impl Cli {
             Verb::Offset(verb) => verb.run(),
             Verb::Reproduce(verb) => verb.run(),
             Verb::Prepare(verb) => verb.run(),
+            Verb::Machine(verb) => verb.run(),
         }
     }
 }

@@ -31,6 +31,9 @@ pub struct Motion {
     /// How a tick integrates the feed law
     #[arg(long, value_enum, default_value_t = OrderName::First)]
     order: OrderName,
+    /// The machine that shall run it: a job that leaves the machine's travel is refused
+    #[arg(long, value_name = "MACHINE.toml")]
+    machine: Option<String>,
 }
 
 /// The interpolator's order as it is written.
@@ -62,6 +65,11 @@ impl Motion {
             OrderName::Exact => Order::Exact,
         };
         let path = Path::new(&job, order)?;
+        if let Some(name) = &self.machine {
+            let machine = host_sim::machine::read(name)?.activate();
+            let machine = machine.map_err(|error| InputError::new(name, error))?;
+            path.check_travel(&job, &machine.soft_limits())?;
+        }
         Ok((job, path))
     }
 }

@@ -44,7 +44,7 @@ pub struct Clearance {
     pub samples: usize,
 }
 
-/// Measures `offset` against `contour`. About 10 us a sample and segment nearby; a few seconds for thousands of segments.
+/// Measures `offset` against `contour`, in a second or two.
 pub fn clearance(contour: &Contour, offset: &Offset) -> Clearance {
     let pieces = offset.loops.iter().map(|l| l.pieces.len()).sum::<usize>() + contour.segments.len();
     let [least, most] = PER_PIECE;

@@ -21,8 +21,8 @@ const STRAIGHT: f64 = 0.02;
 /// A loop shorter than this is a tool that just fits a place, to rounding: left out, as the largest tool that fits is.
 const PLUNGE: f64 = 2.5e-9;
 
-/// How far a trim point may move when it is made exact, in the unit of the frame: more than the change of the distance can ask for.
-const POLISH: f64 = 1e-7;
+/// How many times farther than the change of the distance asks for a trim point may move when it is made exact.
+const POLISH: f64 = 8.0;
 
 /// A piece on its way, in the frame.
 #[derive(Clone, Copy, Debug)]
@@ -46,7 +46,8 @@ pub fn loops(contour: &Contour, ground: &Ground, traced: &Traced, distance: f64)
         .iter()
         .map(|joint| {
             let given = [joint.ends.1, joint.begins.1];
-            if joint.exact { given } else { polish([strands.get(joint.ends.0), strands.get(joint.begins.0)], given) }
+            let sides = [joint.ends.0, joint.begins.0].map(|k| strands.get(k));
+            if joint.exact { given } else { polish(sides, given, (exact - traced.distance).abs()) }
         })
         .collect();
     let mut loops: Vec<Loop> = traced
@@ -77,9 +78,12 @@ fn at_distance(ground: &Ground, strand: &Strand, distance: f64) -> Stretch {
     }
 }
 
-/// The parameters at which two strands cross, by Newton's method from near there; as given where that leads away.
-fn polish(strands: [Option<&Stretch>; 2], given: [f64; 2]) -> [f64; 2] {
+/// The parameters at which two strands cross, by Newton's method from where they cross at a distance that differs by `change`; as
+/// given where that leads away.
+fn polish(strands: [Option<&Stretch>; 2], given: [f64; 2], change: f64) -> [f64; 2] {
     let [Some(first), Some(second)] = strands else { return given };
+    let sine = first.at(given[0]).tangent.cross(second.at(given[1]).tangent).abs();
+    let reach = POLISH * (change + 1e-15) / sine;
     let gap = |[xi, eta]: [f64; 2]| (first.at(xi).point - second.at(eta).point).norm();
     let mut best = given;
     let mut tau = given;
@@ -88,7 +92,7 @@ fn polish(strands: [Option<&Stretch>; 2], given: [f64; 2]) -> [f64; 2] {
         tau = [tau[0] + a, tau[1] + b];
         let moved = (first.at(tau[0]).point - first.at(given[0]).point).norm()
             + (second.at(tau[1]).point - second.at(given[1]).point).norm();
-        if moved.is_nan() || moved >= POLISH {
+        if moved.is_nan() || moved >= reach {
             break;
         }
         if gap(tau) <= gap(best) {

@@ -47,7 +47,8 @@ fn sift(ground: &Ground, strand: Strand, distance: f64, halvings: u32, keep: &mu
     // Over a turn of 45 degrees an arc is less than 1.1 times as long as its chord.
     let way = 1.1 * (stretch.start() - middle).norm().max((stretch.end() - middle).norm());
     let limit = distance.abs() - ROUNDING;
-    let Some((_, foot)) = ground.field.nearest(middle, limit) else { return keep(strand, Cover::Clear) };
+    let slack = |stretch: usize| ground.slack(strand.source, stretch);
+    let Some((_, foot)) = ground.field.nearest_but(middle, limit, slack) else { return keep(strand, Cover::Clear) };
     if foot.distance < limit - way {
         return keep(strand, Cover::Buried);
     }

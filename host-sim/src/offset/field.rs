@@ -63,30 +63,35 @@ impl Field {
 
     /// The nearest place on any stretch, if one is nearer to `point` than `limit`.
     pub fn nearest(&self, point: Complex<f64>, limit: f64) -> Option<(usize, Foot)> {
+        self.nearest_but(point, limit, |_| 0.0)
+    }
+
+    /// The same where a stretch counts as farther away by what `slack` says for its number, which is not below zero.
+    pub fn nearest_but(&self, point: Complex<f64>, limit: f64, slack: impl Fn(usize) -> f64) -> Option<(usize, Foot)> {
         let mut best: Option<(usize, Foot)> = None;
         let mut limit = limit;
         for (entry, distance_sqr) in self.tree.nearest_neighbor_iter_with_distance_2([point.re, point.im]) {
             if distance_sqr > limit * limit {
                 break;
             }
-            if let Some(stretch) = self.stretches.get(entry.number) {
-                let here = foot(stretch, point);
-                if here.distance < limit {
-                    limit = here.distance;
-                    best = Some((entry.number, here));
-                }
+            let Some(stretch) = self.stretches.get(entry.number) else { continue };
+            let here = foot(stretch, point);
+            let distance = here.distance + slack(entry.number);
+            if distance < limit {
+                limit = distance;
+                best = Some((entry.number, Foot { distance, ..here }));
             }
         }
         best
     }
 
-    /// The distance of some stretch that is nearer to `point` than `limit`; not always the nearest. None if there is none.
-    pub fn any_nearer(&self, point: Complex<f64>, limit: f64) -> Option<f64> {
+    /// Whether some stretch is nearer to `point` than `limit`, with the same slack. It ends at the first one that is.
+    pub fn any_nearer(&self, point: Complex<f64>, limit: f64, slack: impl Fn(usize) -> f64) -> bool {
         self.tree
             .nearest_neighbor_iter_with_distance_2([point.re, point.im])
             .take_while(|(_, distance_sqr)| *distance_sqr <= limit * limit)
-            .filter_map(|(entry, _)| Some(foot(self.stretches.get(entry.number)?, point).distance))
-            .find(|&distance| distance < limit)
+            .filter_map(|(entry, _)| Some((entry.number, foot(self.stretches.get(entry.number)?, point))))
+            .any(|(number, foot)| foot.distance + slack(number) < limit)
     }
 
     /// Calls `look` for every two stretches whose triangles meet, once, the lower number first.

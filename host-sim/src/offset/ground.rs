@@ -5,6 +5,7 @@ use shared::curve::{Arc, Curve as _, Line, PhQuintic, Segment};
 
 use super::crossing::{Crossing, crossings};
 use super::field::Field;
+use super::strand::Source;
 use super::stretch::{Stretch, cuts};
 use super::{Contour, OffsetError};
 
@@ -25,6 +26,8 @@ pub struct Ground {
     pub field: Field,
     /// For each stretch, the segment that it is a part of.
     pub segment_of: Vec<usize>,
+    /// For each node, by how much the contour does not meet there.
+    gaps: Vec<f64>,
     middle: Complex<f64>,
     scale: f64,
     /// The frame's turn against the contour's own axes.
@@ -63,7 +66,9 @@ impl Ground {
                 }
             }
         }
-        Ok(Self { contour, cuts, field: Field::new(stretches), segment_of, middle, scale, turn })
+        let gap = |[before, after]: [&Segment<f64>; 2]| (before.point(1.0) - after.point(0.0)).norm();
+        let gaps = (0..contour.segments.len()).map(|node| contour.at_node(node).map_or(0.0, gap)).collect();
+        Ok(Self { gaps, contour, cuts, field: Field::new(stretches), segment_of, middle, scale, turn })
     }
 
     /// A length in mm in this frame's unit.
@@ -83,7 +88,23 @@ impl Ground {
 
     /// How far the contour is from meeting at a node.
     pub fn gap(&self, node: usize) -> f64 {
-        self.contour.at_node(node).map_or(0.0, |[before, after]| (before.point(1.0) - after.point(0.0)).norm())
+        self.gaps.get(node).copied().unwrap_or(0.0)
+    }
+
+    /// By how much a stretch may seem too near to the offset along `source` for no other reason than that the contour does not meet
+    /// at the node between them.
+    pub fn slack(&self, source: Source, stretch: usize) -> f64 {
+        let last = self.contour.segments.len().saturating_sub(1);
+        let Some(&segment) = self.segment_of.get(stretch) else { return 0.0 };
+        let before = if segment > 0 { segment - 1 } else { last };
+        let here = match source {
+            Source::Segment(own) if own == segment => 0.0,
+            Source::Segment(own) if own == before => self.gap(own),
+            Source::Segment(own) if segment == if own > 0 { own - 1 } else { last } => self.gap(segment),
+            Source::Fill(node) if node == before => self.gap(node),
+            _ => 0.0,
+        };
+        2.0 * here
     }
 
     /// Errors: two stretches cross.

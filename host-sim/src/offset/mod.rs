@@ -116,18 +116,18 @@ pub struct Undercut {
 }
 
 /// How often another |d| and another turn of the frame are tried where pieces do not join, or where some are missing.
-const ATTEMPTS: u32 = 32;
+const ATTEMPTS: u32 = 96;
 
 /// By how much |d| is changed, relatively, to find which pieces there are, and by how much the frame is turned, in radians.
 ///
 /// A tool that just fits a slot, a node that falls on a trim point, three walls at one distance: exactly at d such a thing can be
 /// decided neither way, a little beside it it can. The first change is to a little less, so that a tool that just fits does fit.
-/// Trim points are made exact at d afterwards, and no clearance falls short of |d| by more than 6.4e-10 of it. Turning, by the
+/// Trim points are made exact at d afterwards, and no clearance falls short of |d| by more than 6.3e-10 of it. Turning, by the
 /// golden angle, lets rounding fall differently.
 fn attempt(number: u32) -> (f64, f64) {
     let side = if number.is_multiple_of(2) { -1.0 } else { 1.0 };
     let number = f64::from(number);
-    (side * 1e-11 * (1.0 + 1.97 * number), 2.399_963_229_728_653 * number)
+    (side * 1e-11 * (1.0 + 0.65 * number), 2.399_963_229_728_653 * number)
 }
 
 /// The trimmed offset of `contour` at the signed `distance` in mm.
@@ -144,7 +144,7 @@ pub fn trim(contour: &Contour, distance: f64) -> Result<Offset, OffsetError> {
         if number > 0 {
             ground = Ground::new(contour, distance, angle)?;
         }
-        let Ok(traced) = trace(&ground, exact * (1.0 + nudge)) else { continue };
+        let Ok(traced) = trace(&ground, exact * (1.0 + nudge), number % 4 == 3) else { continue };
         if best.as_ref().is_none_or(|&(lost, _)| traced.lost < lost) {
             best = Some((traced.lost, assemble::loops(contour, &ground, &traced, distance)));
         }

@@ -148,7 +148,7 @@ impl<'a> Reach<'a> {
 
     /// The trimmed offset of a tool, if it is not so large that only the curvature bounds it.
     fn traced(&self, radius: f64) -> Option<Traced> {
-        (radius > 0.0 && radius < 0.5 * UNBOUNDED).then(|| trace(self.ground, self.side * radius).ok()).flatten()
+        (radius > 0.0 && radius < 0.5 * UNBOUNDED).then(|| trace(self.ground, self.side * radius, false).ok()).flatten()
     }
 
     /// A place that a tool of this radius does not touch.

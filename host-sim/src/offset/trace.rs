@@ -20,6 +20,8 @@ pub const ROUNDING: f64 = 1e-14;
 /// What is kept, not yet polished.
 #[derive(Debug)]
 pub struct Traced {
+    /// The distance that it was traced at, in the frame.
+    pub distance: f64,
     /// The untrimmed offset.
     pub untrimmed: Untrimmed,
     /// Their crossings.
@@ -84,16 +86,22 @@ struct Event {
 }
 
 /// The trimmed offset at `distance`, in the frame of `ground`. Errors: what is found does not join to loops.
-pub fn trace(ground: &Ground, distance: f64) -> Result<Traced, Undecided> {
+///
+/// With `mouths`, necks are taken to be as narrow as rounding where they may be ([`super::close::mouths`]).
+pub fn trace(ground: &Ground, distance: f64, mouths: bool) -> Result<Traced, Undecided> {
     let (untrimmed, covers) = bury(ground, Untrimmed::new(ground, distance), distance);
     let limit = distance.abs();
-    let (joints, events) = meet(&untrimmed, &covers, close(ground, &untrimmed, &covers, limit));
+    let mut given = close(ground, &untrimmed, &covers, limit);
+    if mouths {
+        given.extend(super::close::mouths(ground, &untrimmed, &covers, limit));
+    }
+    let (joints, events) = meet(&untrimmed, &covers, given);
     let tracer = Tracer { ground, untrimmed: &untrimmed, covers: &covers, joints: &joints, events: &events, limit };
     let fragments: Vec<Fragment> =
         tracer.candidates().into_iter().filter(|fragment| tracer.is_clear(fragment)).collect();
     let lost = tracer.lost(&fragments);
     let loops = chain(fragments, &joints, &untrimmed)?;
-    Ok(Traced { untrimmed, joints, loops, lost })
+    Ok(Traced { distance, untrimmed, joints, loops, lost })
 }
 
 /// All crossings of strands that are not buried.
@@ -257,7 +265,8 @@ impl Tracer<'_> {
             shares.iter().all(|share| {
                 let Some(strand) = self.untrimmed.strands.get(k) else { return false };
                 let point = strand.stretch.at(from + (to - from) * share).point;
-                self.ground.field.any_nearer(point, self.limit - ROUNDING).is_none()
+                let slack = |stretch: usize| self.ground.slack(strand.source, stretch);
+                !self.ground.field.any_nearer(point, self.limit - ROUNDING, slack)
             })
         });
         whole && count > 0

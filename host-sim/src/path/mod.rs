@@ -8,6 +8,7 @@ mod route;
 
 use shared::complex::Complex;
 use shared::error::PathError;
+use shared::extent::SoftLimits;
 use shared::fixed::{Fixed, Position, round_point};
 use shared::loader::Loader;
 use shared::piece::{Header, Order, Piece};
@@ -51,6 +52,15 @@ impl Path {
             None => InputError::new(job.name(), error),
         })?;
         Ok(path)
+    }
+
+    /// Whether the whole path lies within a machine's travel, as the controller will ask. Errors: the first piece that leaves it,
+    /// with the place in the job's file.
+    pub fn check_travel(&self, job: &Job, limits: &SoftLimits) -> Result<(), InputError> {
+        for (number, (piece, wire)) in self.pieces.iter().zip(self.wire()).enumerate() {
+            limits.check(&wire).map_err(|error| job.piece_error(number, piece.along, error))?;
+        }
+        Ok(())
     }
 
     /// Loads the whole path as the controller will. Errors: the first piece that is refused, and why.

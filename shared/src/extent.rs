@@ -1,0 +1,293 @@
+//! Soft limits: how far a piece reaches, and whether an axis may go there. Load time, before anything moves.
+//!
+//! | piece | its box |
+//! | --- | --- |
+//! | line | exact |
+//! | arc | exact: its ends, and the circle's outermost points that lie on it |
+//! | PH curve, or its offset | holds it; on a common curve wider by less than 1 % of its size (test `the_box_of_a_common_curve_is_tight`) |
+//!
+//! r_d is a rational Bezier curve of degree 9 with the weights sigma (Farouki & Sakkalis 1990): the numerator is r sigma + d(-i w^2). On
+//! each [`PARTS`]-th of a piece the curve lies in the hull of its control points where all weights are above zero, and within |d|
+//! of the hull of r everywhere. Boxes are widened by the rounding of all this, 40 roundoffs of the largest coordinate.
+
+use crate::complex::Complex;
+use crate::error::PathError;
+use crate::fixed::Fixed;
+use crate::piece::{Piece, Shape};
+use crate::polynomial::{Polynomial, bernstein_product};
+use crate::real::Real;
+
+/// Into how many parts a PH curve is cut.
+pub const PARTS: i32 = 8;
+
+/// What a piece may seem to leave the travel by, in mm: a job that goes right to its end is not refused for rounding.
+pub const SLACK_MM: f64 = 1e-3;
+
+/// The smallest and the largest coordinates of x and y, in mm.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Extent<T> {
+    /// The smallest x and y.
+    pub low: [T; 2],
+    /// The largest x and y.
+    pub high: [T; 2],
+}
+
+impl<T: Real> Extent<T> {
+    fn of(point: Complex<T>) -> Self {
+        Self { low: [point.re, point.im], high: [point.re, point.im] }
+    }
+
+    /// Widened so that it holds `point` and what is within `margin` of it.
+    fn with(self, point: Complex<T>, margin: T) -> Self {
+        let ([x0, y0], [x1, y1]) = (self.low, self.high);
+        Self {
+            low: [x0.least(point.re - margin), y0.least(point.im - margin)],
+            high: [x1.most(point.re + margin), y1.most(point.im + margin)],
+        }
+    }
+
+    /// Widened by the rounding of its computation.
+    fn rounded(self, magnitude: T) -> Self {
+        let margin = magnitude * (T::lit(40.0) * T::ROUNDOFF);
+        Self { low: self.low.map(|c| c - margin), high: self.high.map(|c| c + margin) }
+    }
+}
+
+impl<T: Real> Piece<T> {
+    /// A box that holds the piece, relative to its origin. Of a piece that the loader would refuse it may be anything.
+    pub fn extent(&self) -> Extent<T> {
+        match self.shape {
+            Shape::Line { chord } => Extent::of(chord * T::HALF).with(chord * -T::HALF, T::ZERO),
+            Shape::Arc { radius, sweep, .. } => arc(radius, sweep),
+            Shape::Ph { preimage, offset } => ph(preimage, offset),
+        }
+    }
+}
+
+/// The arc of a circle about -`radius` that passes through 0 half-way.
+fn arc<T: Real>(radius: Complex<T>, sweep: T) -> Extent<T> {
+    let size = radius.norm();
+    let half = sweep.abs() * T::HALF;
+    let end = |angle: T| {
+        let (sine, versine) = angle.sin_versin();
+        radius * Complex::new(-versine, sine)
+    };
+    let ends = Extent::of(end(half)).with(end(-half), T::ZERO);
+    let directions = [(T::ONE, T::ZERO), (T::ZERO, T::ONE), (-T::ONE, T::ZERO), (T::ZERO, -T::ONE)];
+    let whole = directions.into_iter().fold(ends, |extent, (x, y)| {
+        let direction = Complex::new(x, y);
+        // An outermost point that lies beyond an end by rounding only is as good as the end.
+        let turn = radius.cross(direction).atan2(radius.dot(direction)).abs();
+        if turn <= half { extent.with(direction * size + radius * -T::ONE, T::ZERO) } else { extent }
+    });
+    whole.rounded(size)
+}
+
+/// The offset of the curve with the preimage A + B tau + C tau^2.
+fn ph<T: Real>([a, b, c]: [Complex<T>; 3], offset: T) -> Extent<T> {
+    let third = T::lit(1.0 / 3.0);
+    let integral = Polynomial([
+        a.square(),
+        a * b,
+        (b.square() + (a * c) * T::TWO) * third,
+        (b * c) * T::HALF,
+        c.square() * T::lit(0.2),
+    ]);
+    let step = T::ONE / T::from_int(PARTS);
+    let mut extent: Option<Extent<T>> = None;
+    let mut largest = offset.abs();
+    for part in 0..PARTS {
+        let from = T::from_int(part) * step - T::HALF;
+        // The preimage on this part, in Bernstein form.
+        let (first, last) = (a + (b + c * from) * from, a + (b + c * (from + step)) * (from + step));
+        let middle = first + (b + c * (from * T::TWO)) * (step * T::HALF);
+        let w = [first, middle, last];
+        let square = [
+            first.square(),
+            first * middle,
+            (middle.square() * T::TWO + first * last) * third,
+            middle * last,
+            last.square(),
+        ];
+        let mut point = integral.at(from, Complex::ZERO) * from;
+        let mut r = [point; 6];
+        for (slot, square) in r.iter_mut().skip(1).zip(square) {
+            point = point + square * (step * T::lit(0.2));
+            *slot = point;
+        }
+        largest = r.iter().fold(largest, |largest, point| largest.most(point.re.abs()).most(point.im.abs()));
+        let hull = |extent: Option<Extent<T>>, point: Complex<T>, margin: T| {
+            Some(extent.unwrap_or(Extent::of(point)).with(point, margin))
+        };
+        extent = match rational(w, square, r, offset) {
+            Some(points) => points.into_iter().fold(extent, |extent, point| hull(extent, point, T::ZERO)),
+            None => r.into_iter().fold(extent, |extent, point| hull(extent, point, offset.abs())),
+        };
+    }
+    extent.unwrap_or(Extent::of(Complex::ZERO)).rounded(largest)
+}
+
+/// The control points of the offset of one part as a rational curve; none where a weight is not clearly above zero.
+fn rational<T: Real>(
+    w: [Complex<T>; 3],
+    square: [Complex<T>; 5],
+    r: [Complex<T>; 6],
+    offset: T,
+) -> Option<[Complex<T>; 10]> {
+    let third = T::lit(1.0 / 3.0);
+    let sigma = [
+        w[0].norm_sqr(),
+        w[0].dot(w[1]),
+        (T::TWO * w[1].norm_sqr() + w[0].dot(w[2])) * third,
+        w[1].dot(w[2]),
+        w[2].norm_sqr(),
+    ];
+    let raise = |values: [T; 5]| -> [T; 10] { bernstein_product(values, [T::ONE; 6]) };
+    let weights = raise(sigma);
+    let most = weights.iter().fold(T::ZERO, |most: T, weight| most.most(weight.abs()));
+    // Small weights would enlarge the rounding of what they divide.
+    if !weights.iter().all(|&weight| weight > most * T::lit(0.05)) {
+        return None;
+    }
+    // -i w^2 is w^2 turned to the right.
+    let (x, y): ([T; 10], [T; 10]) =
+        (bernstein_product(r.map(|point| point.re), sigma), bernstein_product(r.map(|point| point.im), sigma));
+    let (u, v) = (raise(square.map(|z| z.right().re)), raise(square.map(|z| z.right().im)));
+    let mut points = [Complex::ZERO; 10];
+    let rows = points.iter_mut().zip(weights).zip(x.into_iter().zip(y)).zip(u.into_iter().zip(v));
+    for (((point, weight), (x, y)), (u, v)) in rows {
+        *point = Complex::new((x + u * offset) / weight, (y + v * offset) / weight);
+    }
+    Some(points)
+}
+
+/// The travel of the axes x and y, in machine coordinates.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct SoftLimits {
+    /// The lowest coordinates.
+    pub low: [Fixed; 2],
+    /// The highest coordinates.
+    pub high: [Fixed; 2],
+}
+
+impl SoftLimits {
+    /// Whether all of a piece lies within the travel. Errors: the first axis that would leave it, by more than [`SLACK_MM`],
+    /// and by how much.
+    pub fn check<T: Real>(&self, piece: &Piece<T>) -> Result<(), PathError> {
+        let extent = piece.extent();
+        let ([x0, y0], [x1, y1], [x, y]) = (extent.low, extent.high, piece.origin);
+        let ([least_x, least_y], [most_x, most_y]) = (self.low, self.high);
+        for (axis, origin, low, high, least, most) in [(0, x, x0, x1, least_x, most_x), (1, y, y0, y1, least_y, most_y)]
+        {
+            // From the limit to the origin in integers, so that this is as exact far from zero as near it. Written so that a NaN fails.
+            let (below, above) = (origin.minus::<T>(least) + low, origin.minus::<T>(most) + high);
+            let slack = T::lit(SLACK_MM);
+            let inside = below >= -slack && above <= slack;
+            if !inside {
+                let beyond = if above > slack { above } else { below };
+                return Err(PathError::SoftLimit { axis, beyond: beyond.to_f32() });
+            }
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::active::ActivePiece;
+
+    fn piece<T: Real>(shape: Shape<T>) -> Piece<T> {
+        Piece {
+            origin: [Fixed(0); 2],
+            shape,
+            interval: [T::ZERO, T::ONE],
+            feed: T::ONE,
+            start: None,
+            end: None,
+            last: None,
+        }
+    }
+
+    fn close(found: Extent<f64>, low: [f64; 2], high: [f64; 2]) {
+        for (found, expected) in found.low.into_iter().chain(found.high).zip(low.into_iter().chain(high)) {
+            assert!((found - expected).abs() < 1e-12, "{found} for {expected}");
+        }
+    }
+
+    #[test]
+    fn lines_and_arcs_have_exact_boxes() {
+        let line = piece(Shape::Line { chord: Complex::new(-6.0, 4.0) });
+        close(line.extent(), [-3.0, -2.0], [3.0, 2.0]);
+        let quadrant = core::f64::consts::FRAC_PI_2;
+        let arc = |sweep| piece(Shape::Arc { radius: Complex::new(0.0, 5.0), sweep, ratio: 1.0 }).extent();
+        // About (0, -5) through the origin: a quarter, three quarters, the whole circle.
+        let side = 5.0 * core::f64::consts::FRAC_1_SQRT_2;
+        close(arc(quadrant), [-side, side - 5.0], [side, 0.0]);
+        close(arc(-3.0 * quadrant), [-5.0, -5.0 - side], [5.0, 0.0]);
+        close(arc(4.0 * quadrant), [-5.0, -10.0], [5.0, 0.0]);
+    }
+
+    #[test]
+    fn a_limit_is_told_with_its_axis_and_by_how_much() {
+        let travel = SoftLimits { low: [0.0_f64, 0.0].map(Fixed::from_mm), high: [10.0_f64, 3.0].map(Fixed::from_mm) };
+        let mut line = piece(Shape::Line { chord: Complex::new(10.0_f32, 2.0) });
+        line.origin = [5.0_f64, 1.0].map(Fixed::from_mm);
+        assert_eq!(travel.check(&line), Ok(()));
+        line.origin = [5.0_f64, 3.5].map(Fixed::from_mm);
+        assert_eq!(travel.check(&line), Err(PathError::SoftLimit { axis: 1, beyond: 1.5 }));
+        line.origin = [4.0_f64, 1.0].map(Fixed::from_mm);
+        assert_eq!(travel.check(&line), Err(PathError::SoftLimit { axis: 0, beyond: -1.0 }));
+        line.shape = Shape::Line { chord: Complex::new(f32::NAN, 0.0) };
+        assert!(travel.check(&line).is_err());
+    }
+
+    prop_compose! {
+        fn number()(value in -4.0..4.0_f64) -> f64 { value }
+    }
+
+    proptest! {
+        /// Every point that the tick would put out lies in the box, in f32 as in f64, and the box is hardly wider than the points.
+        #[test]
+        fn the_box_holds_every_point(
+            [a, b, c, d, e, f] in prop::array::uniform6(number()), offset in -8.0..8.0_f64,
+        ) {
+            let preimage = [Complex::new(a, b), Complex::new(c, d), Complex::new(e, f)];
+            let exact = piece(Shape::Ph { preimage, offset });
+            let single = preimage.map(|z| Complex::new(z.re as f32, z.im as f32));
+            let rounded = piece(Shape::Ph { preimage: single, offset: offset as f32 });
+            if let (Ok(active), Ok(small)) = (
+                ActivePiece::activate(&exact, 0.0, 1e-3), ActivePiece::activate(&rounded, 0.0, 1e-3),
+            ) {
+                let (wide, narrow) = (exact.extent(), rounded.extent());
+                for k in -500..=500 {
+                    let (point, _) = active.point_and_rate(f64::from(k) * 1e-3);
+                    prop_assert!(point.re >= wide.low[0] && point.re <= wide.high[0], "{point:?} {wide:?}");
+                    prop_assert!(point.im >= wide.low[1] && point.im <= wide.high[1], "{point:?} {wide:?}");
+                    let (point, _) = small.point_and_rate(k as f32 * 1e-3);
+                    prop_assert!(point.re >= narrow.low[0] && point.re <= narrow.high[0], "{point:?} {narrow:?}");
+                    prop_assert!(point.im >= narrow.low[1] && point.im <= narrow.high[1], "{point:?} {narrow:?}");
+                }
+            }
+        }
+    }
+
+    /// On a curve as people draw it the box is wider than the curve by less than a hundredth of its size.
+    #[test]
+    fn the_box_of_a_common_curve_is_tight() {
+        let preimage = [Complex::new(3.0, 0.5), Complex::new(0.3, 1.5), Complex::new(-0.2, 0.2)];
+        let curve = piece::<f64>(Shape::Ph { preimage, offset: -2.0 });
+        let active = ActivePiece::activate(&curve, 0.0, 1e-3).unwrap();
+        let first = Extent::of(active.point_and_rate(-0.5).0);
+        let sampled =
+            (-5_000..=5_000).fold(first, |extent, k| extent.with(active.point_and_rate(f64::from(k) * 1e-4).0, 0.0));
+        let size = sampled.high[0] - sampled.low[0];
+        let found = curve.extent();
+        for axis in 0..2 {
+            assert!(sampled.low[axis] - found.low[axis] < 0.01 * size, "{sampled:?} {found:?}");
+            assert!(found.high[axis] - sampled.high[axis] < 0.01 * size, "{sampled:?} {found:?}");
+        }
+    }
+}
