@@ -1,4 +1,4 @@
-//! Independent measurements of a motion: nothing here asks the kernel.
+//! Independent measurements of a motion and of an offset: nothing here asks what made them.
 
 mod bounds;
 mod clearance;
