@@ -14,7 +14,7 @@
 //! | [`prepare`] | a checked job as bytes, for a sender |
 //! | [`plant`] | motors, screws, friction, encoders: what hangs on the axes |
 //! | [`simulate`] | the tick of `shared` over a path, with or without a plant |
-//! | [`measure`] | contour error and exact time, independent of the kernel |
+//! | [`measure`] | contour error, exact time, and the clearance of an offset, independent of what made them |
 //! | [`trimming`] | what an offset comes to, in the units of its file |
 //! | [`reproduce`] | published experiments beside their published figures |
 //! | [`report`] | pictures and tables of results in one HTML file |
