@@ -33,7 +33,11 @@ fn published_runs(order: Order) {
     let name = root().join("examples/farouki2018.toml");
     for weight in [0.0, 0.5, 1.0] {
         for reduction in [0.25, 0.5, 0.75, 1.0] {
-            let by = FeedOverride { weight: Some(weight), reduction: Some(Reduction::Fixed(reduction)), ..FeedOverride::default() };
+            let by = FeedOverride {
+                weight: Some(weight),
+                reduction: Some(Reduction::Fixed(reduction)),
+                ..FeedOverride::default()
+            };
             let job = Job::read(name.to_str().unwrap()).unwrap().with_feed(by).unwrap();
             let ticks = compare(&job, order, &format!("w = {weight}, f = {reduction}, {order:?}"));
             // Some ten seconds of motion: an empty comparison would prove nothing.
