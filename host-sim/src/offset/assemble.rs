@@ -241,7 +241,6 @@ fn finish(contour: &Contour, ground: &Ground, drafts: Vec<Draft>, closed: bool, 
         length += draft.length;
         area += draft.area;
     }
-    // The sweep of a fill arc of the other side would be negative; the tool runs on forwards all the same.
     if pieces.is_empty() {
         return None;
     }

@@ -23,6 +23,13 @@ pub enum Cover {
     Clear,
 }
 
+impl Cover {
+    /// Whether anything of the strand may be kept.
+    pub fn lives(self) -> bool {
+        self != Self::Buried
+    }
+}
+
 /// The same strands, some of them halved, and what covers each.
 pub fn bury(ground: &Ground, untrimmed: Untrimmed, distance: f64) -> (Untrimmed, Vec<Cover>) {
     let Untrimmed { strands, own } = untrimmed;

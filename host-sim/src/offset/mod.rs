@@ -20,7 +20,7 @@
 //! 3. `bury`: a strand whose middle is nearer to C than |d|, by more than the way to its ends, is left out.
 //! 4. `crossing`: all crossings of the strands that are left. Two strands are graphs over a common axis, and their slopes at the ends of
 //!    a part bound them in between, so crossings are counted with certainty and made exact by Newton's method; the touching of two
-//!    strands whose gap is 1e-13 of the contour's size is told from their crossing. What is flatter than that is joined by `close`.
+//!    strands whose gap is 1e-13 of the contour's size is told from their crossing. What is flatter than that is joined by `flat`.
 //! 5. `trace`: at a crossing one strand passes into the reach of the other. So a fragment is kept if it begins where its strand comes
 //!    out, ends where it passes in, and is not covered by anything else, which its distance from C tells (`foot`). At each crossing
 //!    exactly one kept fragment ends and one begins: they join to loops by themselves. If they do not, or if a clear strand is part
@@ -36,11 +36,12 @@
 
 mod assemble;
 mod bury;
-mod close;
 mod crossing;
 mod error;
 mod field;
+mod flat;
 mod foot;
+mod golden;
 mod ground;
 mod nesting;
 mod reach;

@@ -3,11 +3,11 @@
 //! A tool touches a point of C exactly if it is no larger than the disc that is tangent there and as large as C lets it be. So the
 //! least of these radii belongs to the largest tool that reaches everything, and the greatest to the largest that fits at all.
 
+use super::golden::golden;
 use super::ground::Ground;
 use super::strand::{Source, Strand, Untrimmed};
 use super::stretch::Stretch;
 use super::trace::{End, Traced, interval, trace};
-use super::undercut::golden;
 
 /// Discs larger than this, in the unit of the frame, are bounded by the curvature of C alone: a point of C as far away as the
 /// contour is large would lie in one by less than rounding can tell.

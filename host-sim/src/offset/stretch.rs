@@ -43,7 +43,7 @@ enum Local {
 }
 
 /// A place on a stretch.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct At {
     /// The point of the offset.
     pub point: Complex<f64>,

@@ -8,9 +8,9 @@
 use std::collections::{HashMap, HashSet};
 
 use super::bury::{Cover, bury};
-use super::close::close;
 use super::crossing::{Crossing, crossings};
 use super::field::Field;
+use super::flat::Flat;
 use super::ground::Ground;
 use super::strand::Untrimmed;
 
@@ -24,7 +24,7 @@ pub struct Traced {
     pub distance: f64,
     /// The untrimmed offset.
     pub untrimmed: Untrimmed,
-    /// Their crossings.
+    /// The crossings of its strands, and what is joined without one.
     pub joints: Vec<Joint>,
     /// Runs of fragments, each beginning where the one before it ends.
     pub loops: Vec<TracedLoop>,
@@ -87,13 +87,14 @@ struct Event {
 
 /// The trimmed offset at `distance`, in the frame of `ground`. Errors: what is found does not join to loops.
 ///
-/// With `mouths`, necks are taken to be as narrow as rounding where they may be ([`super::close::mouths`]).
+/// With `mouths`, necks are taken to be as narrow as rounding where they may be ([`Flat::mouths`]).
 pub fn trace(ground: &Ground, distance: f64, mouths: bool) -> Result<Traced, Undecided> {
     let (untrimmed, covers) = bury(ground, Untrimmed::new(ground, distance), distance);
     let limit = distance.abs();
-    let mut given = close(ground, &untrimmed, &covers, limit);
+    let flat = Flat::new(ground, &untrimmed, &covers, limit);
+    let mut given = flat.ends();
     if mouths {
-        given.extend(super::close::mouths(ground, &untrimmed, &covers, limit));
+        given.extend(flat.mouths());
     }
     let (joints, events) = meet(&untrimmed, &covers, given);
     let tracer = Tracer { ground, untrimmed: &untrimmed, covers: &covers, joints: &joints, events: &events, limit };
@@ -104,20 +105,21 @@ pub fn trace(ground: &Ground, distance: f64, mouths: bool) -> Result<Traced, Und
     Ok(Traced { distance, untrimmed, joints, loops, lost })
 }
 
-/// All crossings of strands that are not buried.
-fn meet(untrimmed: &Untrimmed, covers: &[Cover], close: Vec<Joint>) -> (Vec<Joint>, Vec<Vec<Event>>) {
+/// All crossings of strands that are not buried, and the joints that are `given`; the strands of these are not asked.
+fn meet(untrimmed: &Untrimmed, covers: &[Cover], given: Vec<Joint>) -> (Vec<Joint>, Vec<Vec<Event>>) {
     let strands = &untrimmed.strands;
     let numbers: Vec<usize> =
-        (0..strands.len()).filter(|&k| covers.get(k).is_some_and(|cover| *cover != Cover::Buried)).collect();
+        (0..strands.len()).filter(|&k| covers.get(k).is_some_and(|cover| cover.lives())).collect();
     let field = Field::new(numbers.iter().filter_map(|&k| Some(strands.get(k)?.stretch)).collect());
+    let joined: HashSet<(usize, usize)> =
+        given.iter().map(|joint| (joint.ends.0.min(joint.begins.0), joint.ends.0.max(joint.begins.0))).collect();
     let mut joints = Vec::new();
     let mut events: Vec<Vec<Event>> = vec![Vec::new(); strands.len()];
     let mut found: Vec<Crossing> = Vec::new();
     field.pairs(|i, j| {
         let [Some(&a), Some(&b)] = [i, j].map(|k| numbers.get(k)) else { return };
         let [Some(first), Some(second)] = [a, b].map(|k| strands.get(k)) else { return };
-        let joined = |joint: &Joint| [(a, b), (b, a)].contains(&(joint.ends.0, joint.begins.0));
-        if untrimmed.is_border(a) || untrimmed.neighbours(a, b) || close.iter().any(joined) {
+        if untrimmed.is_border(a) || untrimmed.neighbours(a, b) || joined.contains(&(a, b)) {
             return;
         }
         found.clear();
@@ -140,7 +142,7 @@ fn meet(untrimmed: &Untrimmed, covers: &[Cover], close: Vec<Joint>) -> (Vec<Join
             }
         }
     });
-    for joint in close {
+    for joint in given {
         for ((strand, tau), begins) in [(joint.ends, false), (joint.begins, true)] {
             if let Some(events) = events.get_mut(strand) {
                 events.push(Event { tau, joint: joints.len(), begins });
@@ -166,7 +168,7 @@ struct Tracer<'a> {
 impl Tracer<'_> {
     /// Strands that follow each other, as long as none is buried; and whether such a run is a ring.
     fn runs(&self) -> Vec<(Vec<usize>, bool)> {
-        let alive = |k: usize| self.covers.get(k).is_some_and(|cover| *cover != Cover::Buried);
+        let alive = |k: usize| self.covers.get(k).is_some_and(|cover| cover.lives());
         let mut runs: Vec<Vec<usize>> = Vec::new();
         for (k, strand) in self.untrimmed.strands.iter().enumerate().take(self.untrimmed.own) {
             if !alive(k) {
@@ -250,16 +252,11 @@ impl Tracer<'_> {
         lost.count()
     }
 
-    /// The interval of a fragment on one of its strands.
-    fn interval(&self, fragment: &Fragment, position: usize) -> [f64; 2] {
-        interval(fragment, self.joints, position)
-    }
-
     /// Whether no point of a fragment is nearer to C than |d|: looked up in its middle and in that of each of its strands.
     fn is_clear(&self, fragment: &Fragment) -> bool {
         let count = fragment.strands.len();
         let whole = fragment.strands.iter().enumerate().all(|(position, &k)| {
-            let [from, to] = self.interval(fragment, position);
+            let [from, to] = interval(fragment, self.joints, position);
             // A short fragment is looked at where it is farthest from its ends; a long one in each strand.
             let shares: &[f64] = if count <= 2 { &[0.5, 0.2, 0.8] } else { &[0.5] };
             shares.iter().all(|share| {

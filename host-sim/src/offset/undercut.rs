@@ -3,6 +3,7 @@
 use shared::complex::Complex;
 
 use super::field::Field;
+use super::golden::golden;
 use super::ground::Ground;
 use super::stretch::Stretch;
 use super::{Along, Offset, Undercut};
@@ -130,23 +131,4 @@ fn deepest(ground: &Ground, way: &Field, radius: f64, from: f64, to: f64) -> Opt
         }
     }
     best
-}
-
-/// The place of a minimum between `a` and `b` by the golden section, to half the digits.
-pub fn golden(function: impl Fn(f64) -> f64, mut a: f64, mut b: f64) -> f64 {
-    const SHARE: f64 = 0.618_033_988_749_894_8;
-    let (mut x, mut y) = (b - SHARE * (b - a), a + SHARE * (b - a));
-    let (mut fx, mut fy) = (function(x), function(y));
-    for _ in 0..48 {
-        if fx < fy {
-            (b, y, fy) = (y, x, fx);
-            x = b - SHARE * (b - a);
-            fx = function(x);
-        } else {
-            (a, x, fx) = (x, y, fy);
-            y = a + SHARE * (b - a);
-            fy = function(y);
-        }
-    }
-    if fx < fy { x } else { y }
 }
