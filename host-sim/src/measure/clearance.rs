@@ -44,7 +44,7 @@ pub struct Clearance {
     pub samples: usize,
 }
 
-/// Measures `offset` against `contour`. About 10 us a sample and segment nearby; a few seconds for thousands of segments.
+/// Measures `offset` against `contour`, in a second or two.
 pub fn clearance(contour: &Contour, offset: &Offset) -> Clearance {
     let pieces = offset.loops.iter().map(|l| l.pieces.len()).sum::<usize>() + contour.segments.len();
     let [least, most] = PER_PIECE;
@@ -130,6 +130,8 @@ struct Removed {
     interval: [f64; 2],
     /// The segment, or those that meet at the node.
     own: [usize; 2],
+    /// The larger curvature of those at the node.
+    beside: f64,
 }
 
 impl Removed {
@@ -148,16 +150,20 @@ impl Removed {
         match self.node {
             Some(node) => {
                 let out = self.curve.point(xi) - node;
-                Contact { point: node, normal: out * (1.0 / out.norm()), bend: 0.0 }
+                Contact { point: node, normal: out * (1.0 / out.norm()), bend: 0.0, beside: self.beside }
             }
-            None => Contact {
-                point: self.curve.point(xi),
-                normal: self.curve.tangent(xi).right() * distance.signum(),
-                // The right of travel is the outside of a curve that bends to the left.
-                bend: -self.curve.curvature(xi) * distance.signum(),
-            },
+            None => {
+                let normal = self.curve.tangent(xi).right() * distance.signum();
+                let bend = bend(&self.curve, xi, distance);
+                Contact { point: self.curve.point(xi), normal, bend, beside: bend }
+            }
         }
     }
+}
+
+/// The curvature towards a tool at the signed `distance`: the right of travel is the outside of what bends to the left.
+fn bend(curve: &Segment<f64>, xi: f64, distance: f64) -> f64 {
+    -curve.curvature(xi) * distance.signum()
 }
 
 /// All of the untrimmed offset without the parts `retained`.
@@ -175,16 +181,18 @@ fn removed(contour: &Contour, distance: f64, retained: &[Along], size: f64) -> V
     }
     let mut parts = Vec::new();
     for (number, (segment, intervals)) in contour.segments.iter().zip(on_segment).enumerate() {
-        let whole = Removed { curve: *segment, node: None, interval: [0.0, 1.0], own: [number; 2] };
+        let whole = Removed { curve: *segment, node: None, interval: [0.0, 1.0], own: [number; 2], beside: 0.0 };
         parts.extend(gaps(intervals).map(|interval| Removed { interval, ..whole }));
     }
     for (node, intervals) in on_fill.into_iter().enumerate().take(contour.nodes()) {
         let (Some(turn), Some(arc)) = (contour.turning_angle(node), contour.fill_arc(node, distance)) else { continue };
-        let Some([before, _]) = contour.at_node(node) else { continue };
+        let Some([before, after]) = contour.at_node(node) else { continue };
         // Only convex nodes have a gap to fill.
         if turn * distance > 0.0 {
             let own = [node, (node + 1) % contour.segments.len()];
-            let whole = Removed { curve: Segment::Arc(arc), node: Some(before.point(1.0)), interval: [0.0, 1.0], own };
+            let beside = bend(before, 1.0, distance).max(bend(after, 0.0, distance));
+            let (curve, node) = (Segment::Arc(arc), Some(before.point(1.0)));
+            let whole = Removed { curve, node, interval: [0.0, 1.0], own, beside };
             parts.extend(gaps(intervals).map(|interval| Removed { interval, ..whole }));
         }
     }

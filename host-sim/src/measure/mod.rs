@@ -1,5 +1,6 @@
-//! Independent measurements of a motion: nothing here asks the kernel.
+//! Independent measurements of a motion and of an offset: nothing here asks what made them.
 
+mod bounds;
 mod clearance;
 mod foot_point;
 mod integral;

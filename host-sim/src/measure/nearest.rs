@@ -11,6 +11,7 @@ use std::f64::consts::TAU;
 use shared::complex::Complex;
 use shared::curve::{Arc, Curve as _, Line, PhQuintic, Segment};
 
+use super::bounds::{Bounds, Tree};
 use crate::contour::Contour;
 
 /// What sums of squares may be wrong by, relative to the largest term.
@@ -33,111 +34,50 @@ pub struct Foot {
     pub point: Complex<f64>,
 }
 
-/// Lower left and upper right corner.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Bounds([Complex<f64>; 2]);
-
-impl Bounds {
-    /// The box around `points`.
-    pub(super) fn around(points: impl IntoIterator<Item = Complex<f64>>) -> Self {
-        let far = f64::INFINITY;
-        Self(points.into_iter().fold([Complex::new(far, far), Complex::new(-far, -far)], |[low, high], p| {
-            [Complex::new(low.re.min(p.re), low.im.min(p.im)), Complex::new(high.re.max(p.re), high.im.max(p.im))]
-        }))
-    }
-
-    /// A box around the whole of `segment` at the distance `offset`.
-    pub(super) fn of(segment: &Segment<f64>, offset: f64) -> Self {
-        let bare = match segment {
-            Segment::Line(line) => Self::around([line.start, line.end]),
-            Segment::Ph(curve) => Self::around(curve.control_points()),
-            Segment::Arc(arc) => {
-                // Between two of these points an arc leaves their chord by less than half of its part's length.
-                let points = (0..=16).map(|k| arc.point(f64::from(k) / 16.0));
-                Self::around(points).grown(arc.length() / 32.0)
-            }
-        };
-        bare.grown(offset.abs())
-    }
-
-    /// Larger by so much on every side.
-    pub(super) fn grown(self, by: f64) -> Self {
-        let Self([low, high]) = self;
-        let by = Complex::new(by, by);
-        Self([low - by, high + by])
-    }
-
-    /// The square of the distance from `p`; 0 inside.
-    pub(super) fn distance_sqr(&self, p: Complex<f64>) -> f64 {
-        let Self([low, high]) = self;
-        let x = (low.re - p.re).max(p.re - high.re).max(0.0);
-        let y = (low.im - p.im).max(p.im - high.im).max(0.0);
-        x * x + y * y
-    }
-
-    /// The length of the diagonal.
-    pub(super) fn size(&self) -> f64 {
-        let Self([low, high]) = self;
-        (*high - *low).norm()
-    }
-}
-
 /// Answers which point of a contour is nearest to a given one.
 #[derive(Debug)]
 pub struct Nearest<'a> {
     contour: &'a Contour,
-    bounds: Vec<Bounds>,
-    size: f64,
+    tree: Tree,
 }
 
 impl<'a> Nearest<'a> {
     /// For `contour`.
     pub fn new(contour: &'a Contour) -> Self {
-        let bounds: Vec<_> = contour.segments.iter().map(|segment| Bounds::of(segment, 0.0)).collect();
-        let size = Bounds::around(bounds.iter().flat_map(|b| b.0)).size();
-        Self { contour, bounds, size }
+        Self { contour, tree: Tree::new(contour.segments.iter().map(Bounds::of)) }
     }
 
     /// The diagonal of a box around the contour, in mm; not the tightest box.
     pub fn size(&self) -> f64 {
-        self.size
+        self.tree.size()
     }
 
     /// The point nearest to `p`; of a contour without segments, one infinitely far away.
     pub fn at(&self, p: Complex<f64>) -> Foot {
         let mut best = Foot { distance: f64::INFINITY, segment: 0, xi: 0.0, point: p };
-        // A node first: most segments are farther from p than that and are not looked at.
-        for (segment, curve) in self.contour.segments.iter().enumerate() {
-            let point = start(curve);
-            let distance = (point - p).norm();
-            if distance < best.distance {
-                best = Foot { distance, segment, xi: 0.0, point };
-            }
-        }
-        for segment in 0..self.contour.segments.len() {
+        self.tree.visit(p, best.distance, |segment| {
             self.improve(&mut best, segment, p);
-        }
+            best.distance
+        });
         best
     }
 
     /// Whether a segment other than those `left_out` comes nearer to `p` than `distance`.
     pub(super) fn any_within(&self, p: Complex<f64>, distance: f64, left_out: [usize; 2]) -> bool {
-        let others = (0..self.contour.segments.len()).filter(|segment| !left_out.contains(segment));
         let mut best = Foot { distance, segment: 0, xi: 0.0, point: p };
-        others.into_iter().any(|segment| {
-            self.improve(&mut best, segment, p);
-            best.distance < distance
-        })
+        self.tree.visit(p, distance, |segment| {
+            if !left_out.contains(&segment) {
+                self.improve(&mut best, segment, p);
+            }
+            // One is enough.
+            if best.distance < distance { 0.0 } else { distance }
+        });
+        best.distance < distance
     }
 
     /// Puts the nearest point of a segment in the place of `best`, if it is nearer to `p`.
     fn improve(&self, best: &mut Foot, segment: usize, p: Complex<f64>) {
-        let (Some(curve), Some(bounds)) = (self.contour.segments.get(segment), self.bounds.get(segment)) else {
-            return;
-        };
-        if bounds.distance_sqr(p) >= best.distance * best.distance {
-            return;
-        }
+        let Some(curve) = self.contour.segments.get(segment) else { return };
         let mut offer = |xi: f64| {
             let point = curve.point(xi);
             let distance = (point - p).norm();
@@ -160,15 +100,6 @@ impl<'a> Nearest<'a> {
                 on_ph(curve, p, &mut offer);
             }
         }
-    }
-}
-
-/// The point at 0, as it is stored.
-fn start(segment: &Segment<f64>) -> Complex<f64> {
-    match segment {
-        Segment::Line(line) => line.start,
-        Segment::Arc(arc) => arc.start,
-        Segment::Ph(curve) => curve.start,
     }
 }
 

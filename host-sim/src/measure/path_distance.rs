@@ -7,7 +7,8 @@
 use shared::complex::Complex;
 use shared::curve::{Arc, Curve as _, Line, PhQuintic, Segment};
 
-use super::nearest::{Bounds, halves, on_arc, on_line};
+use super::bounds::{Bounds, Tree};
+use super::nearest::{halves, on_arc, on_line};
 
 /// Intervals below this width are not halved any more: what is left in them is one zero, or a pair that touches.
 const NARROW: f64 = 1e-9;
@@ -18,6 +19,7 @@ const PARTS: u32 = 8;
 #[derive(Debug)]
 pub(super) struct PathDistance {
     pieces: Vec<Part>,
+    tree: Tree,
 }
 
 #[derive(Debug)]
@@ -25,7 +27,6 @@ struct Part {
     /// The piece's segment, cut to its interval.
     segment: Segment<f64>,
     offset: f64,
-    bounds: Bounds,
     /// Where the offset has cusps.
     cusps: Vec<f64>,
 }
@@ -33,47 +34,54 @@ struct Part {
 impl PathDistance {
     /// Of the path of `pieces`: carrier, parameter interval, distance from the carrier.
     pub(super) fn new(pieces: impl IntoIterator<Item = (Segment<f64>, [f64; 2], f64)>) -> Self {
-        let pieces = pieces
+        let pieces: Vec<_> = pieces
             .into_iter()
             .map(|(segment, interval, offset)| {
                 let segment = part(&segment, interval);
-                Part { segment, offset, bounds: bounds(&segment, offset), cusps: cusps(&segment, offset) }
+                Part { segment, offset, cusps: cusps(&segment, offset) }
             })
             .collect();
-        Self { pieces }
+        let tree = Tree::new(pieces.iter().map(|part| bounds(&part.segment, part.offset)));
+        Self { pieces, tree }
     }
 
     /// The distance of `q` from the nearest point of the path, in mm; infinite where there is no path.
     pub(super) fn at(&self, q: Complex<f64>) -> f64 {
         let mut best = f64::INFINITY;
-        for Part { segment, offset, .. } in &self.pieces {
-            best = best.min((segment.offset_point(0.0, *offset) - q).norm());
-        }
-        for Part { segment, offset, bounds, cusps } in &self.pieces {
-            if bounds.distance_sqr(q) >= best * best {
-                continue;
+        self.tree.visit(q, best, |number| {
+            if let Some(part) = self.pieces.get(number) {
+                part.improve(&mut best, q);
             }
-            let mut offer = |xi: f64| {
-                best = best.min((segment.offset_point(xi, *offset) - q).norm());
-                best
-            };
-            offer(1.0);
-            for xi in cusps {
-                offer(*xi);
-            }
-            match segment {
-                Segment::Line(line) => {
-                    offer(on_line(line, q));
-                }
-                Segment::Arc(arc) => {
-                    for xi in on_arc(arc, q) {
-                        offer(xi);
-                    }
-                }
-                Segment::Ph(curve) => on_ph(curve, *offset, q, &mut offer),
-            }
-        }
+            best
+        });
         best
+    }
+}
+
+impl Part {
+    /// Puts the distance of `q` from this part in the place of `best`, if it is less.
+    fn improve(&self, best: &mut f64, q: Complex<f64>) {
+        let Self { segment, offset, cusps } = self;
+        let mut offer = |xi: f64| {
+            *best = best.min((segment.offset_point(xi, *offset) - q).norm());
+            *best
+        };
+        offer(0.0);
+        offer(1.0);
+        for xi in cusps {
+            offer(*xi);
+        }
+        match segment {
+            Segment::Line(line) => {
+                offer(on_line(line, q));
+            }
+            Segment::Arc(arc) => {
+                for xi in on_arc(arc, q) {
+                    offer(xi);
+                }
+            }
+            Segment::Ph(curve) => on_ph(curve, *offset, q, &mut offer),
+        }
     }
 }
 

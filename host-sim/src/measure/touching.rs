@@ -16,8 +16,10 @@ use super::nearest::Nearest;
 const TRIES: u32 = 64;
 /// Roundoffs of a distance, in parts of the coordinates' size.
 const ROUNDOFF: f64 = 8.0 * f64::EPSILON;
-/// Contacts nearer to each other than this angle, as seen from the disc, are hard to tell from the curvature's limit.
+/// Two contacts that form a larger angle than this, as seen from the disc, are told apart to roundoffs.
 const CLOSE: f64 = 0.1;
+/// Where C bends beside a contact by this part of the disc's curvature or more, a second contact may be arbitrarily close.
+const TIGHT: f64 = 0.999;
 
 /// A contact, and the directions from which a tool comes to it.
 #[derive(Clone, Copy, Debug)]
@@ -26,14 +28,17 @@ pub(super) struct Contact {
     pub(super) point: Complex<f64>,
     /// The unit normal towards the tool.
     pub(super) normal: Complex<f64>,
-    /// The curvature of C, positive where it bends towards the tool, in 1/mm; 0 at a corner that the tool goes around.
+    /// The curvature of C that limits the tool, positive where C bends towards it, in 1/mm; 0 at a corner that the tool goes
+    /// around.
     pub(super) bend: f64,
+    /// The largest curvature just beside the contact: the same inside a segment, that of the neighbours at a corner.
+    pub(super) beside: f64,
 }
 
 /// The largest radius up to `most` of a disc that touches at `contact` and has no point of the contour inside: what is certain
 /// of it, without what rounding leaves open. In mm.
 pub(super) fn touching_radius(nearest: &Nearest<'_>, contact: Contact, most: f64) -> f64 {
-    let Contact { point, normal, bend } = contact;
+    let Contact { point, normal, bend, beside } = contact;
     let limit = if bend * most > 1.0 { 1.0 / bend } else { most };
     let mut radius = limit;
     // The angle at the centre between this contact and the one that stopped the disc before.
@@ -54,12 +59,11 @@ pub(super) fn touching_radius(nearest: &Nearest<'_>, contact: Contact, most: f64
         radius = next;
         angle = 2.0 * (chord.norm() / (2.0 * radius)).min(1.0).asin();
     }
-    // A second contact at the angle t makes a disc that is too large by the part x overlap by x t^2/2 of its radius: what is
-    // below rounding is not seen. Where no second contact was met it may be close, but then curvature limits the radius to
-    // a part t^2 above: the worst t is where both meet.
+    // With a second contact at the angle t, a disc that is too large by the part x overlaps C by x t^2/2 of its radius: what is
+    // below rounding is not seen. Beside a tight bend t may be anything, but then the bend limits x to t^2: the worst t is where
+    // both meet.
     let part = rounding / radius;
-    let second = limit > radius * 1.001;
-    let seen = if second { angle.min(CLOSE) } else { CLOSE };
-    let open = if second || limit >= most { 2.0 * part / seen.powi(2) } else { 4.0 * part.sqrt() };
+    let seen = if angle > 0.0 { angle.min(CLOSE) } else { CLOSE };
+    let open = if beside * radius < TIGHT { 2.0 * part / (seen * seen) } else { 4.0 * part.sqrt() };
     radius * (1.0 - open)
 }

@@ -157,7 +157,7 @@ pub fn trim(contour: &Contour, distance: f64) -> Result<Offset, OffsetError> {
         Some((_, loops)) if !loops.is_empty() => Ok(Offset { distance, loops }),
         Some(_) => {
             // The discs are good to 1e-7; that this one does not fit is certain.
-            let largest = largest_fitting(contour, distance).min(distance.abs() * (1.0 - 1e-9));
+            let largest = largest_fitting(contour, distance).min(distance.abs() * (1.0 - 1e-11));
             Err(OffsetError::Empty { largest })
         }
         None => Err(OffsetError::Degenerate),

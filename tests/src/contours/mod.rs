@@ -3,6 +3,9 @@
 //! Half of the families look like parts that people cut; the others are made of what breaks offsets: slots and necks as wide
 //! as the tool to 1e-12, fillets of the tool's radius, osculating bends, symmetric figures whose trim points meet at nodes,
 //! lattices on which many events fall together.
+//!
+//! Tests keep seeds that failed once. Whatever changes what a seed gives, a family or the order of random numbers, voids them:
+//! add families at the price of collecting those anew, or under seeds of their own.
 
 mod closed;
 mod open;
