@@ -8,6 +8,7 @@
 //! and the point of (2) is r + (d/sigma)(-i w^2): both from the one division 1/(|g| sigma). The parameter is tau in -1/2..=1/2.
 
 use crate::complex::Complex;
+use crate::curve::speed_bernstein;
 use crate::error::PathError;
 use crate::feed::FeedLaw;
 use crate::fixed::{Fixed, Position, REACH_MM};
@@ -369,14 +370,7 @@ fn activate_ph<T: Real>(preimage: [Complex<T>; 3], offset: T, contact: T, centre
 fn check_sign<T: Real>([a, b, c]: [Complex<T>; 3], [h0, h1, h2]: [T; 3]) -> Result<(), PathError> {
     let quarter = T::lit(0.25);
     let w = [a - b * T::HALF + c * quarter, a - c * quarter, a + b * T::HALF + c * quarter];
-    let third = T::lit(1.0 / 3.0);
-    let sigma = [
-        w[0].norm_sqr(),
-        w[0].dot(w[1]),
-        (T::TWO * w[1].norm_sqr() + w[0].dot(w[2])) * third,
-        w[1].dot(w[2]),
-        w[2].norm_sqr(),
-    ];
+    let sigma = speed_bernstein(w);
     let h = [h0 - h1 * T::HALF + h2 * quarter, h0 - h2 * quarter, h0 + h1 * T::HALF + h2 * quarter];
     let mut g: [T; 9] = bernstein_product(sigma, sigma);
     let raised: [T; 9] = bernstein_product(h, [T::ONE; 7]);

@@ -11,6 +11,7 @@
 //! of the hull of r everywhere. Boxes are widened by the rounding of all this, 40 roundoffs of the largest coordinate.
 
 use crate::complex::Complex;
+use crate::curve::speed_bernstein;
 use crate::error::PathError;
 use crate::fixed::Fixed;
 use crate::piece::{Piece, Shape};
@@ -134,14 +135,7 @@ fn rational<T: Real>(
     r: [Complex<T>; 6],
     offset: T,
 ) -> Option<[Complex<T>; 10]> {
-    let third = T::lit(1.0 / 3.0);
-    let sigma = [
-        w[0].norm_sqr(),
-        w[0].dot(w[1]),
-        (T::TWO * w[1].norm_sqr() + w[0].dot(w[2])) * third,
-        w[1].dot(w[2]),
-        w[2].norm_sqr(),
-    ];
+    let sigma = speed_bernstein(w);
     let raise = |values: [T; 5]| -> [T; 10] { bernstein_product(values, [T::ONE; 6]) };
     let weights = raise(sigma);
     let most = weights.iter().fold(T::ZERO, |most: T, weight| most.most(weight.abs()));

@@ -11,6 +11,7 @@ pub use arc::Arc;
 pub use hermite::{HermiteError, hermite, hermite_candidates};
 pub use line::Line;
 pub use ph_quintic::PhQuintic;
+pub(crate) use ph_quintic::speed_bernstein;
 
 use crate::complex::Complex;
 use crate::piece::Shape;

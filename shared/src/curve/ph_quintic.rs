@@ -17,6 +17,11 @@ pub struct PhQuintic<T> {
     pub w: [Complex<T>; 3],
 }
 
+/// |w|^2 in Bernstein form, of a preimage in that form.
+pub(crate) fn speed_bernstein<T: Real>([w0, w1, w2]: [Complex<T>; 3]) -> [T; 5] {
+    [w0.norm_sqr(), w0.dot(w1), (T::TWO * w1.norm_sqr() + w0.dot(w2)) * T::lit(1.0 / 3.0), w1.dot(w2), w2.norm_sqr()]
+}
+
 impl<T: Real> PhQuintic<T> {
     /// w(xi).
     pub fn preimage(&self, xi: T) -> Complex<T> {
@@ -59,14 +64,7 @@ impl<T: Real> PhQuintic<T> {
 
     /// sigma in Bernstein form.
     pub fn speed_coefficients(&self) -> [T; 5] {
-        let [w0, w1, w2] = self.w;
-        [
-            w0.norm_sqr(),
-            w0.dot(w1),
-            (T::TWO * w1.norm_sqr() + w0.dot(w2)) * T::lit(1.0 / 3.0),
-            w1.dot(w2),
-            w2.norm_sqr(),
-        ]
+        speed_bernstein(self.w)
     }
 
     /// The parameters inside (0, 1) where the curvature changes its sign: zeros of Im(conj w w'), a quadratic.
