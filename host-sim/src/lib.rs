@@ -11,6 +11,7 @@
 //! | [`job`] | what a person wants: contour, offset, feed; the contour form |
 //! | [`path`] | the exact curves of the tool's centre in f64, and the pieces that a controller gets of them |
 //! | [`machine`] | a machine's file, and what a controller makes of it |
+//! | [`pacing`] | how fast the pace of a path may change within what the axes bear |
 //! | [`prepare`] | a checked job as bytes, for a sender |
 //! | [`plant`] | motors, screws, friction, encoders: what hangs on the axes |
 //! | [`simulate`] | the tick of `shared` over a path, with or without a plant |
@@ -25,6 +26,7 @@ pub mod job;
 pub mod machine;
 pub mod measure;
 pub mod offset;
+pub mod pacing;
 pub mod path;
 pub mod plant;
 pub mod prepare;

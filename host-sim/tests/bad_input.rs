@@ -88,7 +88,7 @@ fn each_fault_has_its_place_and_its_sentence() {
         ("cusp", "distance = 2.0", "distance = -10.0", &["piece 1", "1 + kappa d"]),
         ("unknown-key", "weight = 0.5", "wieght = 0.5", &["job.toml:7:1:", "wieght"]),
         ("not-toml", "units = \"mm\"", "units = mm\"", &["job.toml:1:"]),
-        ("rest", "closed = true", "closed = true\nrest = true", &["job.toml:3:8:", "rest"]),
+        ("rest", "closed = true", "closed = true\nrest = 1", &["job.toml:3:8:", "expected a boolean"]),
         ("arc-centre", "centre = [40.0, 10.0]", "centre = [40.0, 11.0]", &["segment 1", "centre"]),
         ("reduction-word", "reduction = 0.5", "reduction = \"fast\"", &["job.toml:8:13:", "\"fast\"", "`auto`"]),
         ("reduction-list", "reduction = 0.5", "reduction = [0.5]", &["job.toml:8:13:", "\"auto\""]),

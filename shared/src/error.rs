@@ -87,6 +87,22 @@ pub enum PathError {
         /// By how much, in mm: above zero at the high end, below zero at the low one.
         beyond: f32,
     },
+    /// Limits of the pace that are no positive numbers, or a largest pace outside 1..=2.
+    Pace {
+        /// The largest |q'|, in 1/s.
+        slope: f32,
+        /// The largest |q''|, in 1/s^2.
+        bend: f32,
+        /// The largest q.
+        most: f32,
+    },
+    /// With these limits of the pace a stop would take too long.
+    SlowStop {
+        /// The largest |q'|, in 1/s.
+        slope: f32,
+        /// The largest |q''|, in 1/s^2.
+        bend: f32,
+    },
 }
 
 /// The axes of a piece, as people call them.
@@ -129,6 +145,18 @@ impl fmt::Display for PathError {
                 write!(
                     f,
                     "the piece leaves the travel of axis {name} by {by} mm at its {end} end; move the part or the travel"
+                )
+            }
+            Self::Pace { slope, bend, most } => {
+                write!(
+                    f,
+                    "the pace is limited to {slope}/s, {bend}/s2 and {most}; it needs rates above zero and 1 to 2 at most"
+                )
+            }
+            Self::SlowStop { slope, bend } => {
+                write!(
+                    f,
+                    "a pace that changes by {slope}/s and {bend}/s2 would stop too slowly; 0.6/s and 6/s2 are enough"
                 )
             }
         }

@@ -4,6 +4,7 @@
 //! | --- | --- |
 //! | line | exact |
 //! | arc | exact: its ends, and the circle's outermost points that lie on it |
+//! | further axes | exact: their ends |
 //! | PH curve, or its offset | holds it; on a common curve wider by less than 1 % of its size (test `the_box_of_a_common_curve_is_tight`) |
 //!
 //! r_d is a rational Bezier curve of degree 9 with the weights sigma (Farouki & Sakkalis 1990): the numerator is r sigma + d(-i w^2). On
@@ -54,7 +55,7 @@ impl<T: Real> Extent<T> {
     }
 }
 
-impl<T: Real> Piece<T> {
+impl<T: Real, const F: usize> Piece<T, F> {
     /// A box that holds the piece, relative to its origin. Of a piece that the loader would refuse it may be anything.
     pub fn extent(&self) -> Extent<T> {
         match self.shape {
@@ -155,35 +156,45 @@ fn rational<T: Real>(
     Some(points)
 }
 
-/// The travel of the axes x and y, in machine coordinates.
+/// The travel of the axes x, y and of `F` further ones, in machine coordinates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct SoftLimits {
-    /// The lowest coordinates.
-    pub low: [Fixed; 2],
-    /// The highest coordinates.
-    pub high: [Fixed; 2],
+pub struct SoftLimits<const F: usize = 1> {
+    /// The lowest and the highest x and y.
+    pub plane: [[Fixed; 2]; 2],
+    /// The lowest and the highest coordinates of the further axes.
+    pub further: [[Fixed; 2]; F],
 }
 
-impl SoftLimits {
+impl<const F: usize> SoftLimits<F> {
     /// Whether all of a piece lies within the travel. Errors: the first axis that would leave it, by more than [`SLACK_MM`],
     /// and by how much.
-    pub fn check<T: Real>(&self, piece: &Piece<T>) -> Result<(), PathError> {
+    pub fn check<T: Real>(&self, piece: &Piece<T, F>) -> Result<(), PathError> {
         let extent = piece.extent();
-        let ([x0, y0], [x1, y1], [x, y]) = (extent.low, extent.high, piece.origin);
-        let ([least_x, least_y], [most_x, most_y]) = (self.low, self.high);
-        for (axis, origin, low, high, least, most) in [(0, x, x0, x1, least_x, most_x), (1, y, y0, y1, least_y, most_y)]
-        {
-            // From the limit to the origin in integers, so that this is as exact far from zero as near it. Written so that a NaN fails.
-            let (below, above) = (origin.minus::<T>(least) + low, origin.minus::<T>(most) + high);
-            let slack = T::lit(SLACK_MM);
-            let inside = below >= -slack && above <= slack;
-            if !inside {
-                let beyond = if above > slack { above } else { below };
-                return Err(PathError::SoftLimit { axis, beyond: beyond.to_f32() });
+        let reach = extent.low.into_iter().zip(extent.high);
+        for (axis, ((origin, travel), (low, high))) in (0..).zip(piece.origin.iter().zip(self.plane).zip(reach)) {
+            within(axis, travel, *origin, low, high)?;
+        }
+        // A further axis moves linearly, so its ends are its extremes.
+        if let Some(further) = &piece.further {
+            for (axis, ((from, to), travel)) in (2..).zip(further.from.iter().zip(further.to).zip(self.further)) {
+                within(axis, travel, *from, T::ZERO, T::ZERO)?;
+                within(axis, travel, to, T::ZERO, T::ZERO)?;
             }
         }
         Ok(())
     }
+}
+
+/// Whether what reaches from `low` to `high` about an origin lies within the travel of an axis.
+fn within<T: Real>(axis: u8, [least, most]: [Fixed; 2], origin: Fixed, low: T, high: T) -> Result<(), PathError> {
+    // From the limit to the origin in integers, so that this is as exact far from zero as near it. Written so that a NaN fails.
+    let (below, above) = (origin.minus::<T>(least) + low, origin.minus::<T>(most) + high);
+    let slack = T::lit(SLACK_MM);
+    if below >= -slack && above <= slack {
+        return Ok(());
+    }
+    let beyond = if above > slack { above } else { below };
+    Err(PathError::SoftLimit { axis, beyond: beyond.to_f32() })
 }
 
 #[cfg(test)]
@@ -192,6 +203,7 @@ mod tests {
 
     use super::*;
     use crate::active::ActivePiece;
+    use crate::further::Travel;
 
     fn piece<T: Real>(shape: Shape<T>) -> Piece<T> {
         Piece {
@@ -201,6 +213,7 @@ mod tests {
             feed: T::ONE,
             start: None,
             end: None,
+            further: None,
             last: None,
         }
     }
@@ -226,7 +239,8 @@ mod tests {
 
     #[test]
     fn a_limit_is_told_with_its_axis_and_by_how_much() {
-        let travel = SoftLimits { low: [0.0_f64, 0.0].map(Fixed::from_mm), high: [10.0_f64, 3.0].map(Fixed::from_mm) };
+        let mm = |range: [f64; 2]| range.map(Fixed::from_mm);
+        let travel = SoftLimits { plane: [mm([0.0, 10.0]), mm([0.0, 3.0])], further: [mm([-20.0, 0.0])] };
         let mut line = piece(Shape::Line { chord: Complex::new(10.0_f32, 2.0) });
         line.origin = [5.0_f64, 1.0].map(Fixed::from_mm);
         assert_eq!(travel.check(&line), Ok(()));
@@ -234,6 +248,13 @@ mod tests {
         assert_eq!(travel.check(&line), Err(PathError::SoftLimit { axis: 1, beyond: 1.5 }));
         line.origin = [4.0_f64, 1.0].map(Fixed::from_mm);
         assert_eq!(travel.check(&line), Err(PathError::SoftLimit { axis: 0, beyond: -1.0 }));
+        line.origin = [5.0_f64, 1.0].map(Fixed::from_mm);
+        let [low, up] = [-20.0_f64, 0.5].map(|z| [Fixed::from_mm(z)]);
+        line.further = Some(Travel { from: low, to: low });
+        assert_eq!(travel.check(&line), Ok(()));
+        line.further = Some(Travel { from: low, to: up });
+        assert_eq!(travel.check(&line), Err(PathError::SoftLimit { axis: 2, beyond: 0.5 }));
+        line.further = None;
         line.shape = Shape::Line { chord: Complex::new(f32::NAN, 0.0) };
         assert!(travel.check(&line).is_err());
     }

@@ -1,6 +1,6 @@
 //! One number for all setpoints of a run, by which two machines can tell that they moved alike.
 
-use crate::fixed::Position;
+use crate::fixed::Fixed;
 
 /// FNV-1a with 64 bits [Fowler, Noll & Vo], taking a coordinate of 32 bits at a time instead of an octet: a third of a tick's hash is
 /// then one exclusive-or and one multiplication.
@@ -13,9 +13,9 @@ impl SetpointHash {
         Self(0xcbf2_9ce4_8422_2325)
     }
 
-    /// Takes in the setpoint of one tick.
+    /// Takes in the setpoint of one tick: the coordinates of all axes in turn.
     #[inline(always)]
-    pub fn add(&mut self, setpoint: Position) {
+    pub fn add(&mut self, setpoint: impl IntoIterator<Item = Fixed>) {
         for coordinate in setpoint {
             self.0 = (self.0 ^ u64::from(coordinate.0 as u32)).wrapping_mul(0x0000_0100_0000_01b3);
         }

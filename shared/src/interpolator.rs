@@ -11,7 +11,13 @@ use crate::real::Real;
 /// Returns the time that is left when the end of the piece comes first; `tau` then says nothing any more. The step is the
 /// same function of time whether or not the piece ends within it, so that a node changes nothing but the curve.
 #[inline(always)]
-pub fn advance<T: Real>(piece: &ActivePiece<T>, tau: &mut Accumulator<T>, rate: T, order: Order, time: T) -> Option<T> {
+pub fn advance<T: Real, const F: usize>(
+    piece: &ActivePiece<T, F>,
+    tau: &mut Accumulator<T>,
+    rate: T,
+    order: Order,
+    time: T,
+) -> Option<T> {
     match order {
         Order::First => first(tau, rate, time),
         Order::Second => taylor(piece, tau, time, false),
@@ -34,7 +40,12 @@ fn first<T: Real>(tau: &mut Accumulator<T>, rate: T, time: T) -> Option<T> {
 
 /// With tau' = R(tau): tau'' = R' R and tau''' = (R'' R + R'^2) R.
 #[inline(never)]
-fn taylor<T: Real>(piece: &ActivePiece<T>, tau: &mut Accumulator<T>, time: T, third: bool) -> Option<T> {
+fn taylor<T: Real, const F: usize>(
+    piece: &ActivePiece<T, F>,
+    tau: &mut Accumulator<T>,
+    time: T,
+    third: bool,
+) -> Option<T> {
     let Jet([rate, slope, bend]) = piece.rate(Jet::variable(tau.value()));
     let c2 = T::HALF * slope * rate;
     let c3 = if third { (T::TWO * bend * rate + slope * slope) * rate * T::lit(1.0 / 6.0) } else { T::ZERO };
@@ -60,7 +71,7 @@ fn taylor<T: Real>(piece: &ActivePiece<T>, tau: &mut Accumulator<T>, time: T, th
 
 /// The integral of (21): a tick's substeps, each across the knots of F.
 #[inline(never)]
-fn exact<T: Real>(piece: &ActivePiece<T>, tau: &mut Accumulator<T>, time: T) -> Option<T> {
+fn exact<T: Real, const F: usize>(piece: &ActivePiece<T, F>, tau: &mut Accumulator<T>, time: T) -> Option<T> {
     let (substeps, part) = piece.substeps();
     let substep = time * part;
     for done in 1..=substeps {
@@ -72,7 +83,7 @@ fn exact<T: Real>(piece: &ActivePiece<T>, tau: &mut Accumulator<T>, time: T) -> 
 }
 
 /// One substep: at most three stretches on which the rate is smooth, a ramp, the middle and a ramp.
-fn cross_knots<T: Real>(piece: &ActivePiece<T>, tau: &mut Accumulator<T>, time: T) -> Option<T> {
+fn cross_knots<T: Real, const F: usize>(piece: &ActivePiece<T, F>, tau: &mut Accumulator<T>, time: T) -> Option<T> {
     let mut left = time;
     for knot in piece.knots().into_iter().chain([T::HALF]) {
         let room = tau.left_to(knot);
@@ -102,7 +113,7 @@ enum Stretch<T> {
 }
 
 /// Solves integral of d(tau)/R = `time` for the step from `tau`, over at most `room`. Newton's method in a bracket.
-fn smooth<T: Real>(piece: &ActivePiece<T>, tau: T, room: T, time: T) -> Stretch<T> {
+fn smooth<T: Real, const F: usize>(piece: &ActivePiece<T, F>, tau: T, room: T, time: T) -> Stretch<T> {
     let duration =
         |step: T| T::GAUSS.iter().fold(T::ZERO, |sum, &(x, weight)| sum + weight / piece.rate(tau + x * step)) * step;
     let (mut low, mut high) = (T::ZERO, room);

@@ -2,8 +2,8 @@
 //!
 //! A setpoint's way through this crate: a [`curve::Segment`] is cut into a [`piece::Piece`], which travels over the [`link`]; the
 //! [`loader`] checks it and makes the [`active::ActivePiece`] that the [`executor`] walks, moved by the [`interpolator`] under
-//! the [`feed`] law; a [`servo`] turns setpoint and encoder into a command, or [`steps`] turns setpoints into the pulses of a tick.
-//! [`safety`] decides in every tick whether any of it may move.
+//! the [`feed`] law at the [`pace`] that a [`motion`] has come to; a [`servo`] turns setpoint and encoder into a command, or
+//! [`steps`] turns setpoints into the pulses of a tick. [`safety`] decides in every tick whether any of it may move.
 //!
 //! This crate knows no clock, no log, no heap and no board; time and inputs are arguments. All of it is generic over
 //! [`real::Real`]: `f32` on the target and in the simulator, bit for bit the same, and `f64` as the oracle of the same code.
@@ -19,11 +19,13 @@ pub mod accumulator;
 pub mod active;
 pub mod complex;
 pub mod curve;
+pub mod duration;
 pub mod error;
 pub mod executor;
 pub mod extent;
 pub mod feed;
 pub mod fixed;
+pub mod further;
 pub mod hash;
 pub mod homing;
 pub mod interpolator;
@@ -31,12 +33,15 @@ pub mod jet;
 pub mod link;
 pub mod loader;
 pub mod machine;
+pub mod motion;
+pub mod pace;
 pub mod piece;
 pub mod polynomial;
 pub mod real;
 pub mod safety;
 pub mod servo;
 pub mod steps;
+pub mod supply;
 
 /// The tick period in s: 1024 Hz, exactly a power of two, so that times are exact in every float.
 pub const TICK: f32 = 1.0 / 1024.0;

@@ -10,6 +10,8 @@ use serde::{Deserialize, Serialize};
 use crate::complex::Complex;
 use crate::feed::Ramp;
 use crate::fixed::{Fixed, Position};
+use crate::further::Travel;
+use crate::pace::PaceLimits;
 
 /// The curve of a piece in its local frame.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -39,10 +41,11 @@ pub enum Shape<T> {
     },
 }
 
-/// A segment, a parameter interval and an offset distance, with the feed along it: the unit that a tick executes.
+/// A segment, a parameter interval and an offset distance, with the feed along it: the unit that a tick executes. `F` axes may
+/// move with it.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct Piece<T> {
+pub struct Piece<T, const F: usize = 1> {
     /// Where the local frame stands on the machine.
     pub origin: [Fixed; 2],
     /// The curve.
@@ -55,7 +58,10 @@ pub struct Piece<T> {
     pub start: Option<Ramp<T>>,
     /// The ramp at the end; none where the path leaves smoothly.
     pub end: Option<Ramp<T>>,
-    /// On the last piece of a path, and only there: the exact point where the path ends.
+    /// How the further axes move with it, linearly in arc length; none where they stay. With it a line may have no chord: then it
+    /// is as long as this.
+    pub further: Option<Travel<F>>,
+    /// On the last piece of a path, and only there: the exact point where the path ends. Further axes end where `further` does.
     pub last: Option<Position>,
 }
 
@@ -71,6 +77,10 @@ pub struct Header<T> {
     pub closed: bool,
     /// The widest gap between two pieces that is taken for none, in mm.
     pub tolerance: T,
+    /// Whether the path begins and ends at rest; otherwise at its feed.
+    pub rest: bool,
+    /// How starts, stops and overrides may change the pace.
+    pub pace: PaceLimits<T>,
 }
 
 /// How a tick integrates equation (21).

@@ -74,6 +74,7 @@ impl Draft {
             feed: number(self.feed),
             start: self.start.map(ramp),
             end: self.end.map(ramp),
+            further: None,
             last: None,
         }
     }

@@ -1,7 +1,7 @@
 //! What the acceptance tests share: pieces cut from segments for either scalar, a runner of the kernel, and oracles.
 //!
-//! [`draft`] says what a planner knows of a piece and cuts it; [`run`] sends pieces through loader and executor; [`oracle`]
-//! integrates equation (21) from the paper's formulas alone, with no line in common with the kernel.
+//! [`draft`] says what a planner knows of a piece and cuts it; [`run`] sends pieces through loader and executor, [`stock`] is a queue
+//! that a test fills; [`oracle`] integrates equation (21) from the paper's formulas alone, with no line in common with the kernel.
 //!
 //! For offsets: [`chain`] builds contours by hand and [`contours`] at random, [`simple`] decides whether one crosses itself,
 //! [`properties`] holds a trimmed offset against what must be true of it, [`expected`] against closed forms; [`winding`] and
@@ -18,6 +18,7 @@ pub mod properties;
 pub mod random;
 pub mod run;
 pub mod simple;
+pub mod stock;
 pub mod winding;
 
 pub use draft::Draft;

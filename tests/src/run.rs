@@ -6,6 +6,7 @@ use shared::error::PathError;
 use shared::executor::{Executor, Pieces, Place, State};
 use shared::fixed::{Fixed, Position};
 use shared::loader::Loader;
+use shared::pace::PaceLimits;
 use shared::piece::{Header, Order, Piece};
 use shared::real::Real;
 
@@ -25,7 +26,14 @@ impl Scalar for f64 {}
 
 /// A header with a tolerance of 1 um, wide enough for the rounding of both ends of a piece.
 pub fn header<T: Real>(weight: f64, order: Order) -> Header<T> {
-    Header { weight: T::lit(weight), order, closed: false, tolerance: T::lit(1e-3) }
+    Header {
+        weight: T::lit(weight),
+        order,
+        closed: false,
+        tolerance: T::lit(1e-3),
+        rest: false,
+        pace: PaceLimits::USUAL.exact(),
+    }
 }
 
 /// All pieces through the loader.

@@ -9,12 +9,14 @@ use shared::executor::{Executor, State};
 use shared::feed::Ramp;
 use shared::fixed::{Fixed, REACH_MM, UNITS_PER_MM};
 use shared::loader::Loader;
+use shared::pace::PaceLimits;
 use shared::piece::{Header, Order, Piece, Shape};
 use tests::Draft;
 use tests::draft::{arc, curves, line, moved, pieces};
 use tests::run::{Feeder, ORDERS, TICK, header, load};
 
-const HEADER: Header<f32> = Header { weight: 0.5, order: Order::First, closed: false, tolerance: 1e-3 };
+const HEADER: Header<f32> =
+    Header { weight: 0.5, order: Order::First, closed: false, tolerance: 1e-3, rest: false, pace: PaceLimits::USUAL };
 
 /// A piece of each kind that nothing is wrong with.
 fn good() -> [Piece<f32>; 3] {
@@ -224,6 +226,8 @@ fn every_refusal_is_a_sentence() {
         PathError::LastPoint { width: 1.0 },
         PathError::AfterLast,
         PathError::Empty,
+        PathError::Pace { slope: 0.0, bend: 1.0, most: 1.0 },
+        PathError::SlowStop { slope: 0.1, bend: 1.0 },
     ];
     let mut sentences: Vec<String> = all.iter().map(ToString::to_string).collect();
     sentences.sort();
@@ -268,6 +272,7 @@ fn assemble(kind: u8, n: &[f32; SLOTS], ramps: [bool; 2], origin: [i32; 2]) -> (
             feed: n[16],
             start: ramp(ramps[0], 17),
             end: ramp(ramps[1], 19),
+            further: None,
             last: None,
         },
     )
@@ -299,7 +304,8 @@ fn bear(active: ActivePiece<f32>, order: Order, ticks: u32) -> Result<bool, Test
         match executor.state() {
             State::Finished => return Ok(true),
             State::Starved => return Err(TestCaseError::fail("starved with its last piece")),
-            State::Run | State::Idle => {}
+            State::Run => {}
+            state => return Err(TestCaseError::fail(format!("{state:?} at a fixed pace"))),
         }
         let place = executor.place().unwrap();
         prop_assert!(place.tau >= -0.5 && place.tau <= 0.5, "{order:?}: {place:?}");

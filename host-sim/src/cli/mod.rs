@@ -4,6 +4,7 @@ mod machine;
 mod motion;
 mod offset;
 mod output;
+mod pacing;
 mod prepare;
 mod reproduce;
 mod simulate;

@@ -34,6 +34,8 @@ pub struct Motion {
     /// The machine that shall run it: a job that leaves the machine's travel is refused
     #[arg(long, value_name = "MACHINE.toml")]
     machine: Option<String>,
+    #[command(flatten)]
+    pacing: super::pacing::Pacing,
 }
 
 /// The interpolator's order as it is written.
@@ -64,7 +66,7 @@ impl Motion {
             OrderName::Third => Order::Third,
             OrderName::Exact => Order::Exact,
         };
-        let path = Path::new(&job, order)?;
+        let path = self.pacing.apply(Path::new(&job, order)?, &job)?;
         if let Some(name) = &self.machine {
             let machine = host_sim::machine::read(name)?.activate();
             let machine = machine.map_err(|error| InputError::new(name, error))?;

@@ -7,7 +7,10 @@ use host_sim::job::{Job, Units};
 use host_sim::path::Path;
 use host_sim::plant::{Measured, Plant};
 use host_sim::report;
-use host_sim::simulate::{Outcome, SETTLING_TICKS, Sample, simulate};
+use host_sim::simulate::{
+    Action, Carried, Entry, Outcome, SETTLING_TICKS, Sample, Script, percent_from, simulate_script,
+};
+use shared::motion::MotionCommand;
 
 use super::Failure;
 use super::motion::Motion;
@@ -16,7 +19,7 @@ use super::output::{create, failed, json, write};
 /// Run a job through the controller's tick, on a simulated machine or an ideal one
 #[derive(Args)]
 #[command(
-    after_help = "Example:\n  hodograph simulate examples/farouki2018.toml --weight 0.5 --plant examples/farouki2018-mill.toml --report out.html"
+    after_help = "Example:\n  hodograph simulate examples/farouki2018.toml --weight 0.5 --plant examples/farouki2018-mill.toml --report out.html\n  hodograph simulate examples/farouki2018.toml --rest --at 2=hold --at 4=resume --at 6=override:50 --trace trace.csv"
 )]
 pub struct Simulate {
     #[command(flatten)]
@@ -24,6 +27,16 @@ pub struct Simulate {
     /// The machine: a TOML file, or `farouki2018-mill`, which is built in; without one the axes are where their setpoints are
     #[arg(long, value_name = "FILE")]
     plant: Option<String>,
+    /// Run at so many per cent of the path's feed, 1 to 200
+    #[arg(long = "override", value_name = "PERCENT", value_parser = percent_from)]
+    percent: Option<u8>,
+    /// Let something happen at a time in s: hold, resume, cancel, override:PERCENT, block:on, block:off (run piece by piece, each
+    /// after a resume) or starve:SECONDS (no pieces come); may be given often
+    #[arg(long, value_name = "TIME=WHAT")]
+    at: Vec<Entry>,
+    /// How many pieces the controller's queue holds; all of them where it is left out
+    #[arg(long, value_name = "PIECES", value_parser = clap::value_parser!(u32).range(1..))]
+    queue: Option<u32>,
     /// Write the result as JSON; `-` is standard output
     #[arg(long, value_name = "FILE")]
     json: Option<String>,
@@ -64,11 +77,18 @@ impl Simulate {
         Ok(())
     }
 
+    fn script(&self) -> Script {
+        let percent = self.percent.map(|percent| MotionCommand::Override { percent });
+        let first = percent.map(|command| Entry { time: 0.0, action: Action::Command(command) });
+        let entries = first.into_iter().chain(self.at.iter().copied()).collect();
+        Script { entries, queue: self.queue.map(|queue| queue as usize) }
+    }
+
     fn simulate(&self, job: &Job, path: &Path, plant: Option<Plant>) -> Result<(Outcome, Vec<Sample>), Failure> {
         let mut trace = self.trace.as_deref().map(create).transpose()?;
         let mut setpoints = self.setpoints.as_deref().map(create).transpose()?;
         if let Some(out) = &mut trace {
-            writeln!(out, "tick,piece,xi,u,feed,x_cmd,y_cmd,z_cmd,x_act,y_act,z_act,contour_error")
+            writeln!(out, "tick,piece,xi,u,feed,x_cmd,y_cmd,z_cmd,x_act,y_act,z_act,contour_error,pace,state")
                 .map_err(|e| failed("--trace", e))?;
         }
         if let Some(out) = &mut setpoints {
@@ -89,11 +109,12 @@ impl Simulate {
                 written = write_sample(&mut trace, &mut setpoints, sample, job.units);
             }
         };
+        let script = self.script();
         let outcome = match plant {
-            None => simulate(path, job.units, 0, Measured::ideal, look),
+            None => simulate_script(path, &script, job.units, 0, Measured::ideal, look),
             Some(mut plant) => {
                 plant.rest_at(path.start());
-                simulate(path, job.units, SETTLING_TICKS, |setpoint| plant.advance(setpoint), look)
+                simulate_script(path, &script, job.units, SETTLING_TICKS, |setpoint| plant.advance(setpoint), look)
             }
         };
         bar.finish_and_clear();
@@ -117,7 +138,7 @@ fn write_sample(trace: &mut Csv, setpoints: &mut Csv, sample: &Sample, units: Un
         let length = |mm: f64| mm / units.mm();
         writeln!(
             out,
-            "{},{},{},{},{},{},{},{},{},{},{},{}",
+            "{},{},{},{},{},{},{},{},{},{},{},{},{},{}",
             sample.tick,
             sample.piece,
             sample.xi,
@@ -130,6 +151,8 @@ fn write_sample(trace: &mut Csv, setpoints: &mut Csv, sample: &Sample, units: Un
             length(sample.actual.im),
             length(z.to_mm()),
             length(sample.contour_error),
+            sample.pace,
+            sample.state.name(),
         )?;
     }
     Ok(())
@@ -150,6 +173,14 @@ fn print(outcome: &Outcome) {
         outcome.max_contour_error, outcome.rms_contour_error
     );
     println!("setpoints           {}", outcome.setpoint_hash);
+    if outcome.state != "finished" {
+        println!("the path is {}", outcome.state);
+    }
+    for Carried { tick, action, refused } in &outcome.script {
+        if let Some(refused) = refused {
+            println!("warning: {action} was refused in tick {tick}: {refused}");
+        }
+    }
     for (axis, (saturated, lost)) in ["x", "y"].iter().zip(outcome.saturated_ticks.iter().zip(outcome.lost_steps)) {
         if *saturated > 0 {
             println!("warning: the drive of {axis} is at its limit in {saturated} ticks; it cannot follow this feed");

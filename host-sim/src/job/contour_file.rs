@@ -15,11 +15,6 @@ const TOLERANCE_MM: f64 = 1e-3;
 /// Reads all of a job.
 pub(super) fn job(source: Source) -> Result<Job, InputError> {
     let raw = parse(&source)?;
-    if let Some(rest) = &raw.rest
-        && *rest.get_ref()
-    {
-        return Err(source.error(&rest.span(), "starting from rest is not available yet; leave `rest` out or false"));
-    }
     let Some(feed) = &raw.feed else {
         let message = "there is no [feed]; a motion needs at least its rate, as `rate = 600.0` under [feed]";
         return Err(InputError::new(source.name, message));
@@ -29,7 +24,7 @@ pub(super) fn job(source: Source) -> Result<Job, InputError> {
     let Part { units, offset, contour, places } = part;
     let pieces = read_pieces(&places.source, &raw, &contour, offset)?;
     let chosen = raw.offset.and_then(|offset| offset.chosen).map(toml::Spanned::into_inner);
-    Ok(Job { units, tolerance, offset, chosen, feed, contour, pieces, places })
+    Ok(Job { units, tolerance, rest: raw.rest, offset, chosen, feed, contour, pieces, places })
 }
 
 /// Reads what an offset takes; what else the file says must be well-formed, no more.

@@ -70,6 +70,8 @@ pub struct Job {
     pub units: Units,
     /// The widest gap that is taken for none.
     pub tolerance: f64,
+    /// Whether the path begins and ends at rest.
+    pub rest: bool,
     /// The signed offset distance d, positive right of travel.
     pub offset: f64,
     /// Which loop of the trimmed offset is run, where one was chosen.

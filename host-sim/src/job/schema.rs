@@ -10,7 +10,8 @@ use super::Units;
 pub(super) struct RawJob {
     pub units: Units,
     pub closed: Spanned<bool>,
-    pub rest: Option<Spanned<bool>>,
+    #[serde(default)]
+    pub rest: bool,
     pub tolerance: Option<Spanned<f64>>,
     pub offset: Option<RawOffset>,
     pub feed: Option<RawFeed>,

@@ -13,23 +13,43 @@ pub fn exact_time(path: &Path) -> f64 {
     path.pieces.iter().map(|piece| piece_time(piece, path.weight)).sum()
 }
 
-fn piece_time(piece: &PathPiece, weight: f64) -> f64 {
-    let [from, to] = piece.interval;
-    let start = piece.segment.length_to(from);
-    let length = piece.segment_length();
-    let slowness = |xi: f64| {
+/// dt/d(xi) of equation (21) on one piece.
+#[derive(Clone, Copy, Debug)]
+pub struct Slowness<'a> {
+    piece: &'a PathPiece,
+    weight: f64,
+    /// Arc length of the segment before the piece, and of the piece.
+    start: f64,
+    length: f64,
+}
+
+impl<'a> Slowness<'a> {
+    /// On `piece`, at the weight w of its path.
+    pub fn new(piece: &'a PathPiece, weight: f64) -> Self {
+        let start = piece.segment.length_to(piece.interval[0]);
+        Self { piece, weight, start, length: piece.segment_length() }
+    }
+
+    /// The inverse of the rate at a parameter of the segment, in s.
+    pub fn at(&self, xi: f64) -> f64 {
+        let Self { piece, weight, start, length } = *self;
         let u = (piece.segment.length_to(xi) - start) / length;
         let stretch = piece.stretch(xi);
         // Equation (20); on a fill arc V is the centre feed, and the arc is its own centre path.
         let sigma_w = stretch / ((1.0 - weight) * stretch + weight) * piece.segment.speed(xi);
         sigma_w / (reduction(u, piece.start) * reduction(1.0 - u, piece.end) * piece.feed)
-    };
+    }
+}
+
+fn piece_time(piece: &PathPiece, weight: f64) -> f64 {
+    let [from, to] = piece.interval;
+    let slowness = Slowness::new(piece, weight);
     let width = (to - from) / f64::from(PANELS);
     (0..PANELS)
         .map(|k| {
             let left = from + width * f64::from(k);
             let panel: f64 =
-                <f64 as shared::real::Real>::GAUSS.iter().map(|&(x, w)| w * slowness(left + x * width)).sum();
+                <f64 as shared::real::Real>::GAUSS.iter().map(|&(x, w)| w * slowness.at(left + x * width)).sum();
             panel * width
         })
         .sum()

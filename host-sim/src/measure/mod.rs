@@ -10,5 +10,5 @@ mod touching;
 
 pub use clearance::{Clearance, clearance, clearance_with};
 pub use foot_point::ContourError;
-pub use integral::exact_time;
+pub use integral::{Slowness, exact_time};
 pub use nearest::{Foot, Nearest};

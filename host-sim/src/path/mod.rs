@@ -11,10 +11,12 @@ use shared::error::PathError;
 use shared::extent::SoftLimits;
 use shared::fixed::{Fixed, Position, round_point};
 use shared::loader::Loader;
+use shared::pace::PaceLimits;
 use shared::piece::{Header, Order, Piece};
 
 use crate::input::InputError;
 use crate::job::Job;
+use crate::pacing;
 
 pub use piece::PathPiece;
 use route::Route;
@@ -45,8 +47,11 @@ impl Path {
             closed,
             // The controller sees points that are rounded to f32: a tenth of a micrometre on top.
             tolerance: (job.tolerance + 1e-4) as f32,
+            rest: job.rest,
+            pace: PaceLimits::USUAL,
         };
-        let path = Self { pieces, header, weight: job.feed.weight, trimmed };
+        let mut path = Self { pieces, header, weight: job.feed.weight, trimmed };
+        path.header.pace = pacing::usual(&path);
         path.check().map_err(|(number, error)| match path.pieces.get(number) {
             Some(piece) => job.piece_error(number, piece.along, error),
             None => InputError::new(job.name(), error),

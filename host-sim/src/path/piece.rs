@@ -141,6 +141,7 @@ impl PathPiece {
             feed: real(exact.feed),
             start: exact.start.map(ramp),
             end: exact.end.map(ramp),
+            further: None,
             last,
         }
     }
@@ -156,6 +157,7 @@ impl PathPiece {
             feed: self.feed,
             start: self.start,
             end: self.end,
+            further: None,
             last,
         }
     }

@@ -4,13 +4,14 @@ use std::collections::VecDeque;
 
 use serde::Serialize;
 use shared::complex::Complex;
-use shared::executor::{Executor, Place};
+use shared::executor::{Executor, Place, State};
 use shared::fixed::Position;
 
 use crate::job::Units;
 use crate::measure::ContourError;
 use crate::path::Path;
 use crate::plant::Measured;
+use crate::simulate::script::Carried;
 
 /// How many ticks at the start of a run with a plant are left out of the maxima: the drives start at rest while the path moves
 /// at once. The published runs entered the path at speed.
@@ -44,6 +45,10 @@ pub struct Sample {
     pub acceleration: f64,
     /// The normal distance of the actual position from the exact path, in mm.
     pub contour_error: f64,
+    /// The pace q: 1 at the path's own feed.
+    pub pace: f64,
+    /// What the executor is about.
+    pub state: State,
 }
 
 /// The result of a simulation, as `--json` writes it: lengths in the job's units, feeds a minute, times in s.
@@ -81,6 +86,10 @@ pub struct Outcome {
     pub settling_ticks: u64,
     /// One number for all setpoints.
     pub setpoint_hash: String,
+    /// How it ended: `finished`, or what a script made of it.
+    pub state: &'static str,
+    /// What was done of a script.
+    pub script: Vec<Carried>,
 }
 
 /// Gathers the samples of a run.
@@ -146,6 +155,8 @@ impl<'a> Gauge<'a> {
             speed,
             acceleration,
             contour_error,
+            pace: f64::from(executor.pace()),
+            state: executor.state(),
         };
         self.max.feed = self.max.feed.max(feed);
         for (most, lost) in self.max.lost_steps.iter_mut().zip(measured.lost_steps) {
@@ -206,6 +217,8 @@ impl<'a> Gauge<'a> {
             overrun_ticks: self.max.overrun,
             settling_ticks: self.settling,
             setpoint_hash: format!("{:016x}", run.hash.value()),
+            state: run.state.name(),
+            script: run.carried.clone(),
         }
     }
 }

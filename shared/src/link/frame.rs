@@ -121,6 +121,7 @@ mod tests {
     use crate::error::PathError;
     use crate::feed::Ramp;
     use crate::fixed::Fixed;
+    use crate::further::Travel;
     use crate::piece::{Piece, Shape};
 
     fn piece(x: f32, origin: i32) -> Piece<f32> {
@@ -132,6 +133,7 @@ mod tests {
             feed: x,
             start: Some(Ramp { length: 0.25, factor: 0.25 }),
             end: Some(Ramp { length: x, factor: 0.25 }),
+            further: Some(Travel { from: [Fixed(i32::MIN)], to: [Fixed(origin)] }),
             last: Some([Fixed(i32::MIN), Fixed(i32::MAX), Fixed(origin)]),
         }
     }

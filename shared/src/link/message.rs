@@ -10,7 +10,7 @@ use crate::fixed::Position;
 use crate::piece::{Header, Piece};
 
 /// The version of everything in this module. A controller speaks to hosts of the same version only.
-pub const VERSION: u16 = 1;
+pub const VERSION: u16 = 2;
 
 /// From the host to the controller.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]

@@ -12,9 +12,11 @@ use super::*;
 use crate::complex::Complex;
 use crate::error::PathError;
 use crate::fixed::Fixed;
+use crate::pace::PaceLimits;
 use crate::piece::{Order, Shape};
 
-const HEADER: Header<f32> = Header { weight: 0.0, order: Order::First, closed: false, tolerance: 1e-3 };
+const HEADER: Header<f32> =
+    Header { weight: 0.0, order: Order::First, closed: false, tolerance: 1e-3, rest: false, pace: PaceLimits::USUAL };
 
 fn pieces(count: usize) -> Vec<Piece<f32>> {
     let piece = |index| Piece {
@@ -24,6 +26,7 @@ fn pieces(count: usize) -> Vec<Piece<f32>> {
         feed: 1.0,
         start: None,
         end: None,
+        further: None,
         last: None,
     };
     (0..count).map(piece).collect()

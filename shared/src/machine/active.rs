@@ -123,14 +123,13 @@ impl MachineSettings {
 }
 
 impl Machine {
-    /// What jobs may use of the plane. An axis that there is not has no limits but the range of coordinates.
+    /// What jobs may use of the axes x, y and z. An axis that there is not has no limits but the range of coordinates.
     pub fn soft_limits(&self) -> SoftLimits {
         let travel = |name| {
             let axis = self.axes.iter().find(|axis| axis.name == name);
             axis.map_or([-REACH_MM, REACH_MM].map(Fixed::from_mm), |axis| axis.travel)
         };
-        let ([x0, x1], [y0, y1]) = (travel(AxisName::X), travel(AxisName::Y));
-        SoftLimits { low: [x0, y0], high: [x1, y1] }
+        SoftLimits { plane: [travel(AxisName::X), travel(AxisName::Y)], further: [travel(AxisName::Z)] }
     }
 
     /// Takes over the inputs and outputs of one axis.

@@ -13,11 +13,12 @@ use crate::Error;
 use crate::image::Image;
 
 /// The stages of a tick, in the order in which a setpoint passes them.
-pub const STAGES: [(&str, &[&str]); 6] = [
-    ("executor", &["shared/src/executor.rs"]),
+pub const STAGES: [(&str, &[&str]); 7] = [
+    ("executor", &["shared/src/executor.rs", "shared/src/motion.rs", "shared/src/supply.rs"]),
+    ("pace", &["shared/src/pace/mod.rs", "shared/src/pace/lattice.rs"]),
     ("interpolator", &["shared/src/interpolator.rs", "shared/src/accumulator.rs"]),
     ("feed law", &["shared/src/feed.rs"]),
-    ("curve", &["shared/src/active.rs"]),
+    ("curve", &["shared/src/active.rs", "shared/src/active/ph.rs", "shared/src/further.rs"]),
     ("servo", &["shared/src/servo.rs"]),
     ("rest", &[]),
 ];
