@@ -2,11 +2,13 @@
 
 use heapless::spsc::{Consumer, Queue};
 use shared::active::ActivePiece;
-use shared::executor::{Executor, State};
+use shared::executor::{Executor, Pieces, State};
 use shared::fixed::{Fixed, Position};
 use shared::hash::SetpointHash;
-use shared::piece::Order;
+use shared::loader::Motion;
+use shared::motion::MotionCommand;
 use shared::servo::{Servo, ServoState};
+use shared::supply::Source;
 
 use crate::axes::{AXES, settings};
 use crate::mailbox::{Mailbox, Snapshot};
@@ -29,14 +31,16 @@ pub enum Directive {
     /// Begin the path whose pieces stand in the queue, at its first point.
     ///
     /// There is no homing yet: the machine is taken to stand at that point, wherever it is, and nothing jumps.
-    Start(Order, [Fixed; 2]),
+    Start(Motion<f32>, [Fixed; 2]),
+    /// Change the motion that there is; without effect where it does not allow that.
+    Command(MotionCommand),
     /// Stay where you are, and forget the pieces in the queue.
     Stop,
 }
 
 /// The state of everything that moves.
 pub struct Control {
-    pieces: Consumer<'static, ActivePiece<f32>>,
+    pieces: Source<'static, f32>,
     directives: Consumer<'static, Directive>,
     executor: Executor<f32>,
     servos: [(Servo<f32>, ServoState<f32>); AXES],
@@ -47,7 +51,7 @@ pub struct Control {
 
 impl Control {
     /// At rest at the origin, with the encoders at zero.
-    pub fn new(pieces: Consumer<'static, ActivePiece<f32>>, directives: Consumer<'static, Directive>) -> Self {
+    pub fn new(pieces: Source<'static, f32>, directives: Consumer<'static, Directive>) -> Self {
         Self {
             pieces,
             directives,
@@ -61,12 +65,13 @@ impl Control {
 
     /// One tick: from the encoders' counts to the commands of the drives. `stopped` gives up every motion.
     ///
-    /// A directive takes a tick of its own, so that none does both: the path's first tick is the one after.
+    /// A start or a stop takes a tick of its own, so that none does both: the path's first tick is the one after.
     #[inline(always)]
     pub fn tick(&mut self, counts: [i32; AXES], stopped: bool) -> [f32; AXES] {
         match self.directives.dequeue() {
             None if !stopped => self.walk(),
-            Some(Directive::Start(order, point)) if !stopped => self.start(order, point, counts),
+            Some(Directive::Start(motion, point)) if !stopped => self.start(&motion, point, counts),
+            Some(Directive::Command(command)) if !stopped => self.change(command),
             _ => self.stop(),
         }
         self.commands = self.command(self.executor.setpoint(), counts);
@@ -75,10 +80,18 @@ impl Control {
 
     #[inline(always)]
     fn walk(&mut self) {
-        if matches!(self.executor.state(), State::Run | State::Starved) {
+        if self.executor.state().is_moving() || self.executor.state() == State::Held {
             self.hash.add(self.executor.tick(&mut self.pieces));
             self.ticks = self.ticks.wrapping_add(1);
         }
+    }
+
+    /// The motion goes on in the same tick: a command must not cost it one.
+    #[inline(always)]
+    fn change(&mut self, command: MotionCommand) {
+        // What a motion does not allow changes nothing; the link reports the state that there is.
+        let _ = self.executor.command(command);
+        self.walk();
     }
 
     #[inline(always)]
@@ -93,10 +106,10 @@ impl Control {
 
     #[cold]
     #[inline(never)]
-    fn start(&mut self, order: Order, [x, y]: [Fixed; 2], counts: [i32; AXES]) {
+    fn start(&mut self, motion: &Motion<f32>, [x, y]: [Fixed; 2], counts: [i32; AXES]) {
         let position = [x, y, Fixed(0)];
         self.executor.stand_at(position);
-        self.executor.start(order);
+        self.executor.begin(motion);
         for ((servo, state), (coordinate, count)) in self.servos.iter_mut().zip(position.into_iter().zip(counts)) {
             *state = servo.at_rest(coordinate, count);
         }
@@ -108,11 +121,7 @@ impl Control {
     #[inline(never)]
     fn stop(&mut self) {
         self.executor.abort();
-        for _ in 0..PIECES {
-            if self.pieces.dequeue().is_none() {
-                break;
-            }
-        }
+        self.pieces.discard();
     }
 
     /// Leaves what a reporter wants to know; `cycles` is how long the tick took.

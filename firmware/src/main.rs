@@ -30,7 +30,10 @@ use defmt_rtt as _;
 #[allow(missing_docs)]
 #[rtic::app(device = stm32h7xx_hal::pac, peripherals = true, dispatchers = [LPTIM1])]
 mod app {
+    use core::sync::atomic::AtomicU32;
+
     use heapless::spsc::Queue;
+    use shared::supply::{Sink, Source};
 
     use crate::control::{Control, DIRECTIVES, Directive, Directives, PIECES, PieceQueue};
     use crate::hardware::{self, Cycles, Drives, Encoders, SerialPort, StopInput, TickTimer};
@@ -56,6 +59,7 @@ mod app {
 
     #[init(local = [
         pieces: PieceQueue = Queue::new(),
+        horizon: AtomicU32 = AtomicU32::new(0),
         directives: Directives = Queue::new(),
         received: Queue<u8, RX_BYTES> = Queue::new(),
         to_send: Queue<u8, TX_BYTES> = Queue::new(),
@@ -70,8 +74,10 @@ mod app {
         let hardware::Board { timer, encoders, drives, port, stop, lamp } = board;
         defmt::info!("hodograph {}: {} pieces, {} directives", env!("CARGO_PKG_VERSION"), PIECES, DIRECTIVES);
 
-        let link = Link::new(received_consumer, to_send_producer, piece_producer, directive_producer, lamp);
-        let control = Control::new(piece_consumer, directive_consumer);
+        let horizon: &'static AtomicU32 = cx.local.horizon;
+        let (sink, source) = (Sink::new(piece_producer, horizon), Source::new(piece_consumer, horizon));
+        let link = Link::new(received_consumer, to_send_producer, sink, directive_producer, lamp);
+        let control = Control::new(source, directive_consumer);
         (Shared {}, Local { timer, encoders, drives, control, port, stop, link })
     }
 

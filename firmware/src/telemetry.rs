@@ -20,18 +20,26 @@ pub fn motion_state(snapshot: &Snapshot, loading: bool) -> MotionState {
     if MAILBOX.is_stopped() {
         return MotionState::Stopped;
     }
-    match snapshot.state {
-        state if state == State::Run as u32 => MotionState::Running,
-        state if state == State::Starved as u32 => MotionState::Starved,
-        _ if loading => MotionState::Loading,
-        state if state == State::Finished as u32 => MotionState::Finished,
-        _ => MotionState::Idle,
+    let known = [
+        State::Run,
+        State::Starved,
+        State::Braking,
+        State::Holding,
+        State::Held,
+        State::Cancelling,
+        State::Cancelled,
+        State::Finished,
+    ];
+    match known.into_iter().find(|&state| state as u32 == snapshot.state) {
+        None | Some(State::Finished | State::Cancelled) if loading => MotionState::Loading,
+        None => MotionState::Idle,
+        Some(state) => state.into(),
     }
 }
 
 impl Reporter {
-    /// How it goes. `queued` is the number of pieces in the queue.
-    pub fn report(&mut self, snapshot: &Snapshot, loading: bool, queued: u16, broken_frames: u32) -> Telemetry {
+    /// How it goes, without what the link knows.
+    pub fn report(&mut self, snapshot: &Snapshot, loading: bool) -> Telemetry {
         let uptime = MAILBOX.uptime();
         let seconds = uptime.wrapping_sub(self.uptime).max(1) as f32 * shared::TICK;
         let mut square = 0.0;
@@ -47,10 +55,10 @@ impl Reporter {
             setpoint: snapshot.setpoint,
             // micromath's root is off by up to 6 %; it serves a display.
             speed: F32Ext::sqrt(square) / seconds,
-            queued,
+            cycles: snapshot.cycles,
             worst_cycles: MAILBOX.worst_cycles(),
             stack: stack::high_water(),
-            broken_frames,
+            ..Telemetry::default()
         }
     }
 }

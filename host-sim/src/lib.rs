@@ -15,12 +15,16 @@
 //! | [`prepare`] | a checked job as bytes, for a sender |
 //! | [`plant`] | motors, screws, friction, encoders: what hangs on the axes |
 //! | [`simulate`] | the tick of `shared` over a path, with or without a plant |
+//! | [`controller`] | a controller without hardware, behind a line of bytes |
+//! | [`transport`] | the wire to a controller: serial port, file, TCP |
+//! | [`stream`] | a job over a transport, and a look at a controller |
 //! | [`measure`] | contour error and exact time, independent of the kernel |
 //! | [`trimming`] | what an offset comes to, in the units of its file |
 //! | [`reproduce`] | published experiments beside their published figures |
 //! | [`report`] | pictures and tables of results in one HTML file |
 
 pub mod contour;
+pub mod controller;
 pub mod input;
 pub mod job;
 pub mod machine;
@@ -33,5 +37,7 @@ pub mod prepare;
 pub mod report;
 pub mod reproduce;
 pub mod simulate;
+pub mod stream;
+pub mod transport;
 pub mod trimming;
 pub mod units;

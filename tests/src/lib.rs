@@ -6,6 +6,8 @@
 //! For offsets: [`chain`] builds contours by hand and [`contours`] at random, [`simple`] decides whether one crosses itself,
 //! [`properties`] holds a trimmed offset against what must be true of it, [`expected`] against closed forms; [`winding`] and
 //! [`largest_disc`] serve these.
+//!
+//! For the link: [`noisy_line`] loses, doubles, reorders, damages and cuts frames.
 #![forbid(unsafe_code)]
 
 pub mod chain;
@@ -13,6 +15,7 @@ pub mod contours;
 pub mod draft;
 pub mod expected;
 pub mod largest_disc;
+pub mod noisy_line;
 pub mod oracle;
 pub mod properties;
 pub mod random;

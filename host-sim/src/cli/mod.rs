@@ -1,6 +1,7 @@
 //! The command line: one module a verb, each a thin reader of a result that the library computes.
 
 mod machine;
+mod monitor;
 mod motion;
 mod offset;
 mod output;
@@ -8,6 +9,7 @@ mod pacing;
 mod prepare;
 mod reproduce;
 mod simulate;
+mod stream;
 
 use std::fmt;
 use std::process::ExitCode;
@@ -35,6 +37,8 @@ enum Verb {
     Offset(offset::OffsetVerb),
     Reproduce(reproduce::Reproduce),
     Prepare(prepare::Prepare),
+    Stream(stream::Stream),
+    Monitor(monitor::Monitor),
     Machine(machine::MachineVerb),
 }
 
@@ -46,6 +50,8 @@ impl Cli {
             Verb::Offset(verb) => verb.run(),
             Verb::Reproduce(verb) => verb.run(),
             Verb::Prepare(verb) => verb.run(),
+            Verb::Stream(verb) => verb.run(),
+            Verb::Monitor(verb) => verb.run(),
             Verb::Machine(verb) => verb.run(),
         }
     }

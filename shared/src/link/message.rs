@@ -4,22 +4,29 @@ use core::fmt;
 
 use serde::{Deserialize, Serialize};
 
+use super::action::{Action, Answer};
 use super::frame::FrameError;
 use crate::error::PathError;
 use crate::fixed::Position;
+use crate::motion::{CommandError, State};
 use crate::piece::{Header, Piece};
 
-/// The version of everything in this module. A controller speaks to hosts of the same version only.
-pub const VERSION: u16 = 2;
+/// The version of everything that is said. A controller speaks to hosts of the same version only.
+///
+/// `Hello`, its answer and [`Refusal::Version`] keep their form in every version from 3 on, so that two versions can say so.
+pub const VERSION: u16 = 3;
 
 /// From the host to the controller.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Command {
-    /// Starts a conversation. Its sequence number is where the sequence starts; a job that was loading is forgotten.
+    /// Starts a session, in which the sequence begins at 1: one session is one conversation with one job at most. A job that was
+    /// loading is forgotten. The same session again is answered again and changes nothing. Said in no session.
     Hello {
         /// The host's [`VERSION`].
         version: u16,
+        /// A number that the host has not used lately; not 0.
+        session: u32,
     },
     /// Starts a job: what holds for all of its pieces.
     Begin(Header<f32>),
@@ -29,27 +36,25 @@ pub enum Command {
     Run,
     /// Stops the motion where it is and forgets the job. Taken out of sequence.
     Abort,
-    /// Asks for a [`Telemetry`], and for the [`Report::Finished`] of a job that is. Taken out of sequence.
+    /// Asks for a [`Telemetry`], and for the end of a job that has ended. Taken out of sequence, and in no session too: then it is
+    /// answered in none, and the session of somebody else does not notice. A host that has nothing to say says this, to be heard.
     Status,
-}
-
-impl Command {
-    /// Whether this command waits for its turn in the sequence.
-    pub fn is_sequenced(&self) -> bool {
-        !matches!(self, Self::Hello { .. } | Self::Abort | Self::Status)
-    }
+    /// Asks for something beside the job. Numbered apart from the rest, from 0.
+    Act(Action),
 }
 
 /// From the controller to the host.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Report {
-    /// Answers [`Command::Hello`].
+    /// Answers [`Command::Hello`], in no session.
     Hello {
         /// The controller's [`VERSION`].
         version: u16,
-        /// Pieces that its queue holds.
-        capacity: u16,
+        /// The session that is now open.
+        session: u32,
+        /// What the controller is.
+        identity: Identity,
     },
     /// Everything before `next` has been taken.
     Ack {
@@ -76,6 +81,39 @@ pub enum Report {
         /// The hash of all setpoints; the simulator's for the same job.
         hash: u64,
     },
+    /// The job has ended before its last point.
+    Ended(Ending),
+    /// Answers [`Command::Act`].
+    Done {
+        /// The action's number.
+        number: u16,
+        /// What came of it.
+        outcome: Result<Answer, Refusal>,
+    },
+}
+
+/// What a controller is, as far as a host must know.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Identity {
+    /// The version of its firmware: major, minor, patch.
+    pub firmware: [u8; 3],
+    /// How many axes it moves.
+    pub axes: u8,
+    /// Pieces that its queue holds.
+    pub capacity: u16,
+}
+
+/// How a job ended that did not reach its last point.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum Ending {
+    /// It was cancelled, and rests on the path.
+    Cancelled,
+    /// By the emergency stop, or by [`Command::Abort`].
+    Stopped,
+    /// By a fault of the machine, of this number.
+    Fault(u8),
 }
 
 /// Why a command was not taken.
@@ -99,6 +137,16 @@ pub enum Refusal {
     Full,
     /// The emergency stop is pressed.
     Stopped,
+    /// The machine has a fault, of this number; it has to be acknowledged first.
+    Fault(u8),
+    /// The motion does not allow it.
+    Motion(CommandError),
+    /// A number is outside its range.
+    Range,
+    /// This controller cannot do it.
+    Unsupported,
+    /// The configuration image is not whole, or not one.
+    Image,
 }
 
 /// Why a frame was not even read as a command.
@@ -131,6 +179,57 @@ pub enum MotionState {
     Finished,
     /// Stopped by the emergency stop or by [`Command::Abort`], or the job was refused.
     Stopped,
+    /// On a path, slower than the override asks for: what is queued ends soon.
+    Braking,
+    /// On a path, coming to rest for a hold.
+    Holding,
+    /// On a path and at rest, until it is resumed.
+    Held,
+    /// On a path, coming to rest in order to leave it.
+    Cancelling,
+    /// At rest where a path was left.
+    Cancelled,
+    /// Looking for the reference switches.
+    Homing,
+    /// At rest with a fault.
+    Fault,
+}
+
+impl MotionState {
+    /// In one word, for people.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Idle => "idle",
+            Self::Loading => "loading",
+            Self::Running => "running",
+            Self::Starved => "starved",
+            Self::Finished => "finished",
+            Self::Stopped => "stopped",
+            Self::Braking => "braking",
+            Self::Holding => "holding",
+            Self::Held => "held",
+            Self::Cancelling => "cancelling",
+            Self::Cancelled => "cancelled",
+            Self::Homing => "homing",
+            Self::Fault => "fault",
+        }
+    }
+}
+
+impl From<State> for MotionState {
+    fn from(state: State) -> Self {
+        match state {
+            State::Idle => Self::Idle,
+            State::Run => Self::Running,
+            State::Starved => Self::Starved,
+            State::Finished => Self::Finished,
+            State::Braking => Self::Braking,
+            State::Holding => Self::Holding,
+            State::Held => Self::Held,
+            State::Cancelling => Self::Cancelling,
+            State::Cancelled => Self::Cancelled,
+        }
+    }
 }
 
 /// How it goes, at one tick.
@@ -147,8 +246,18 @@ pub struct Telemetry {
     pub setpoint: Position,
     /// The magnitude of the commanded velocity in mm/s, good to 6 %: for people, not for geometry.
     pub speed: f32,
+    /// The override in per cent.
+    pub percent: u8,
+    /// The fault's number; 0 where there is none.
+    pub fault: u8,
     /// Pieces in the queue.
     pub queued: u16,
+    /// The next expected sequence number, as an acknowledgement says it: a lost one is made good within two hundredths of a second.
+    pub next: u16,
+    /// Pieces that may follow before the queue is full.
+    pub room: u16,
+    /// The last tick, in cycles of the core.
+    pub cycles: u32,
     /// The longest tick since the controller started, in cycles of the core.
     pub worst_cycles: u32,
     /// The most stack in use since the controller started, in bytes.
@@ -172,6 +281,11 @@ impl fmt::Display for Refusal {
             Self::Busy => write!(f, "the controller is running a job; wait for its end or stop it first"),
             Self::Full => write!(f, "the controller's queue is full; send no more pieces than it has room for"),
             Self::Stopped => write!(f, "the emergency stop is pressed; release it first"),
+            Self::Fault(number) => write!(f, "the controller has fault {number}; mend its cause and acknowledge it"),
+            Self::Motion(error) => error.fmt(f),
+            Self::Range => write!(f, "a number is outside its range; an override is 1 to 200 %"),
+            Self::Unsupported => write!(f, "this controller cannot do that"),
+            Self::Image => write!(f, "the configuration did not arrive whole; write it again"),
         }
     }
 }
@@ -181,6 +295,16 @@ impl fmt::Display for LinkError {
         match *self {
             Self::Frame(error) => error.fmt(f),
             Self::Gap { found } => write!(f, "frame {found} came before its turn; one before it was lost"),
+        }
+    }
+}
+
+impl fmt::Display for Ending {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Cancelled => write!(f, "the job was cancelled; the machine rests on its path"),
+            Self::Stopped => write!(f, "the job was stopped; the machine rests where it was"),
+            Self::Fault(number) => write!(f, "the job ended with fault {number} of the controller"),
         }
     }
 }

@@ -1,26 +1,39 @@
 //! The link between a host and a controller: what is said, how it is framed, and who may say it when.
 //!
 //! A frame is COBS( postcard( sequence, message ) + CRC-32 ), ended by a zero byte. A zero occurs nowhere else, so a receiver that
-//! has lost its place finds the next frame at the next zero. Three layers, each usable alone:
+//! has lost its place finds the next frame at the next zero. Each layer is usable alone:
 //!
 //! | module | what |
 //! | --- | --- |
 //! | [`message`] | [`Command`] from the host, [`Report`] from the controller, and why something was refused |
+//! | [`action`] | what may be asked beside a job: hold, override, home, the configuration image |
 //! | [`frame`] | [`encode`] into a fixed buffer, and the streaming [`Decoder`] |
 //! | [`receiver`] | the controller's half of the sequence: the next expected command and no other is taken |
-//! | [`sender`] | the host's half: a window of commands in flight, going back where one was lost |
+//! | [`endpoint`] | the controller's end: obeys commands through a [`Machine`], reports, and sees a host vanish |
+//! | [`sender`] | the host's end: a window of commands in flight, going back where one was lost |
 //!
-//! The rules. Commands carry a sequence number. The controller takes the next expected one only; a repeated one is acknowledged
-//! and not executed; after a gap or a broken frame it says which one it expects, and the sender goes back to it. Three commands
-//! stand outside the sequence: `Hello` starts it, `Abort` and `Status` are taken whenever they come. An acknowledgement
-//! carries the room in the queue of pieces, and the sender never has more pieces in flight than that.
+//! The rules.
+//! - `Hello` opens a session, whose number is in the CRC of every frame: nothing that was said in another one is ever taken, and a late
+//!   copy of the `Hello` itself changes nothing. A session has one job at most.
+//! - The commands of a job carry a sequence number. The controller takes the next expected one only; a repeated one is acknowledged
+//!   and not executed; after a gap or a broken frame it says which one it expects, and the sender goes back to it. An
+//!   acknowledgement carries the room in the queue of pieces, and the sender never has more pieces in flight than that.
+//! - Actions are numbered apart from the job, one under way at a time: a hold does not wait behind pieces, and is carried out once.
+//! - `Abort` and `Status` are taken whenever they come.
+//! - Telemetry comes 51 times a second while there is a session. It repeats the acknowledgement, so that a lost one stops nothing.
+//! - Each end is heard at least four times a second. A host that is not is told to the machine, which finishes or brakes as
+//!   configured; a controller that is not is an error of the sender.
 
+pub mod action;
+pub mod endpoint;
 pub mod frame;
 pub mod message;
 pub mod receiver;
 pub mod sender;
 
-pub use frame::{Decoder, FRAME_SIZE, Frame, FrameError, encode};
-pub use message::{Command, LinkError, MotionState, Refusal, Report, Telemetry, VERSION};
+pub use action::{Action, Answer, Chunk};
+pub use endpoint::{End, Endpoint, Machine};
+pub use frame::{Decoder, FRAME_SIZE, Frame, FrameError, NO_SESSION, Received, encode};
+pub use message::{Command, Ending, Identity, LinkError, MotionState, Refusal, Report, Telemetry, VERSION};
 pub use receiver::{Receiver, Turn};
 pub use sender::{Event, Sender, SenderError};

@@ -3,20 +3,32 @@
 //! It owns no port and no clock. The caller hands it what was received, sends what [`Sender::poll`] returns, and says what time it
 //! is, in microseconds from any start. The virtual board and a real serial port drive the same code.
 //!
+//! Without a job it opens a session and carries actions only.
+//!
 //! A job becomes a script of commands, numbered from 0: `Hello`, `Begin`, as many pieces as the queue holds, `Run`, and the pieces
 //! that are left. So a job that fits into the queue is refused as a whole before anything moves.
 
 use core::fmt;
 
-use super::frame::{Decoder, Frame, encode};
-use super::message::{Command, Refusal, Report, Telemetry, VERSION};
+use heapless::Deque;
+
+use super::action::{Action, Answer};
+use super::frame::{Decoder, Frame, NO_SESSION, encode};
+use super::message::{Command, Ending, Identity, Refusal, Report, Telemetry, VERSION};
 use crate::piece::{Header, Piece};
 
 /// Commands in flight at a time, about half a kilobyte: less than the controller's buffer of received bytes.
 pub const WINDOW: u32 = 6;
 
-/// A command that was not acknowledged for so long is sent again, in microseconds. A full window takes 8 ms at 921 600 baud.
-pub const TIMEOUT_US: u64 = 50_000;
+/// A command that was not acknowledged for so long is sent again, in microseconds. A full window takes 50 ms at 115 200 baud, and a USB adapter
+/// may keep an answer for 16 ms.
+pub const TIMEOUT_US: u64 = 120_000;
+
+/// A host that has nothing to say asks for the status after so long, in microseconds, so that the controller knows it is there.
+pub const SIGN_OF_LIFE_US: u64 = 250_000;
+
+/// Actions that may wait for their turn.
+pub const ACTIONS: usize = 8;
 
 /// A command is sent so many times before the sender gives up.
 pub const TRIES: u32 = 10;
@@ -24,9 +36,16 @@ pub const TRIES: u32 = 10;
 /// Sends one job. See the module.
 #[derive(Clone, Debug)]
 pub struct Sender<'a> {
-    header: &'a Header<f32>,
+    session: u32,
+    header: Option<&'a Header<f32>>,
     pieces: &'a [Piece<f32>],
     decoder: Decoder,
+    actions: Deque<Action, ACTIONS>,
+    /// The number of the first of them, when it was sent, and how often.
+    action_number: u16,
+    action_sent_us: Option<u64>,
+    action_tries: u32,
+    said_us: u64,
     /// The controller's queue, once it has said hello.
     capacity: Option<u32>,
     /// The first command that is not acknowledged.
@@ -50,8 +69,8 @@ pub struct Sender<'a> {
 /// What the controller said, as far as a caller is concerned.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Event {
-    /// The conversation has begun; the number is the capacity of the controller's queue.
-    Hello(u16),
+    /// The conversation has begun; this is the controller.
+    Hello(Identity),
     /// How it goes.
     Telemetry(Telemetry),
     /// The job is done.
@@ -63,6 +82,10 @@ pub enum Event {
         /// The hash of all setpoints.
         hash: u64,
     },
+    /// The job has ended before its last point.
+    Ended(Ending),
+    /// An action was carried out, or refused.
+    Done(Action, Result<Answer, Refusal>),
     /// The job was refused; [`Sender::error`] says why.
     Failed(SenderError),
 }
@@ -98,12 +121,27 @@ impl fmt::Display for SenderError {
 impl core::error::Error for SenderError {}
 
 impl<'a> Sender<'a> {
-    /// A sender of the job of `header` and `pieces`.
-    pub fn new(header: &'a Header<f32>, pieces: &'a [Piece<f32>]) -> Self {
+    /// A sender of the job of `header` and `pieces`, in a session of this number, which was not used lately.
+    pub fn new(session: u32, header: &'a Header<f32>, pieces: &'a [Piece<f32>]) -> Self {
+        Self { header: Some(header), pieces, ..Self::without_job(session) }
+    }
+
+    /// A session without a job, for actions.
+    pub fn without_job(session: u32) -> Self {
+        // A session of number 0 would be none.
+        let session = session.max(1);
+        let mut decoder = Decoder::new();
+        decoder.enter(session);
         Self {
-            header,
-            pieces,
-            decoder: Decoder::new(),
+            session,
+            header: None,
+            pieces: &[],
+            decoder,
+            actions: Deque::new(),
+            action_number: 0,
+            action_sent_us: None,
+            action_tries: 0,
+            said_us: 0,
             capacity: None,
             acknowledged: 0,
             next: 0,
@@ -119,8 +157,19 @@ impl<'a> Sender<'a> {
         }
     }
 
+    /// Asks for an action; false where too many wait already.
+    pub fn act(&mut self, action: Action) -> bool {
+        self.actions.push_back(action).is_ok()
+    }
+
     /// The next frame to put on the wire, if there is one now. Call until there is none.
     pub fn poll(&mut self, now_us: u64) -> Option<Frame> {
+        let frame = self.choose(now_us)?;
+        self.said_us = now_us;
+        Some(frame)
+    }
+
+    fn choose(&mut self, now_us: u64) -> Option<Frame> {
         if self.finished || self.error.is_some() {
             return None;
         }
@@ -133,18 +182,47 @@ impl<'a> Sender<'a> {
             }
             if self.acknowledged == self.sent {
                 // Everything has arrived, or there is no room: a lost report is all that can be missing.
-                return encode(self.next as u16, &Command::Status);
+                return encode(self.session, self.next as u16, &Command::Status);
             }
             self.go_back();
         }
+        self.action(now_us).or_else(|| self.script(now_us)).or_else(|| self.sign_of_life(now_us))
+    }
+
+    /// The action whose turn it is, where it was not sent or not answered.
+    fn action(&mut self, now_us: u64) -> Option<Frame> {
+        self.capacity?;
+        let action = *self.actions.front()?;
+        if self.action_sent_us.is_some_and(|sent| now_us.saturating_sub(sent) <= TIMEOUT_US) {
+            return None;
+        }
+        self.resent += u32::from(self.action_tries > 0);
+        self.action_tries += 1;
+        if self.action_tries > TRIES {
+            self.error = Some(SenderError::Lost { reason: self.last_refusal });
+            return None;
+        }
+        self.action_sent_us = Some(now_us);
+        encode(self.session, self.action_number, &Command::Act(action))
+    }
+
+    fn sign_of_life(&self, now_us: u64) -> Option<Frame> {
+        let due = self.capacity.is_some() && now_us.saturating_sub(self.said_us) >= SIGN_OF_LIFE_US;
+        if due { encode(self.session, self.next as u16, &Command::Status) } else { None }
+    }
+
+    /// The next command of the job, where window and room allow it.
+    fn script(&mut self, now_us: u64) -> Option<Frame> {
         let command = self.command(self.next)?;
         if self.next - self.acknowledged >= WINDOW || self.pieces_before(self.next + 1) > self.allowed {
             return None;
         }
-        if self.sent == 0 {
+        if self.sent == self.acknowledged {
+            // Nothing was on its way: the wait begins now.
             self.heard_us = now_us;
         }
-        let frame = encode(self.next as u16, &command);
+        let session = if self.next == 0 { NO_SESSION } else { self.session };
+        let frame = encode(session, self.next as u16, &command);
         self.next += 1;
         self.sent = self.sent.max(self.next);
         frame
@@ -153,16 +231,22 @@ impl<'a> Sender<'a> {
     /// Takes one received byte.
     pub fn receive(&mut self, now_us: u64, byte: u8) -> Option<Event> {
         // A broken report is made good by the next one, or by asking for the status.
-        let (_, report) = self.decoder.push::<Report>(byte)?.ok()?;
-        match report {
-            Report::Hello { version, capacity } => {
-                if version != VERSION {
-                    return Some(self.fail(None, Refusal::Version { version }));
-                }
-                self.capacity = Some(u32::from(capacity).max(1));
-                self.advance(now_us, 1, capacity);
-                Some(Event::Hello(capacity))
+        let said = self.decoder.push::<Report>(byte)?.ok()?;
+        // A conversation begins outside its session. Until it has begun, and there alone, what is said in none is for us.
+        let beginning = self.capacity.is_none();
+        if (said.session == NO_SESSION) != beginning {
+            return None;
+        }
+        match said.message {
+            Report::Hello { session, .. } if session != self.session => None,
+            Report::Hello { version, .. } if version != VERSION => Some(self.fail(None, Refusal::Version { version })),
+            Report::Hello { identity, .. } => {
+                self.capacity = Some(u32::from(identity.capacity).max(1));
+                self.advance(now_us, 1, identity.capacity);
+                Some(Event::Hello(identity))
             }
+            // Somebody else's.
+            Report::Telemetry(_) if beginning => None,
             Report::Ack { next, room } => {
                 self.advance(now_us, next, room);
                 None
@@ -177,27 +261,48 @@ impl<'a> Sender<'a> {
             }
             Report::Refused { sequence, reason } => Some(self.fail(self.piece_of(sequence), reason)),
             Report::Telemetry(telemetry) => {
-                // The controller lives. Whether it still misses something is for the acknowledgements to say.
-                if self.acknowledged == self.sent {
-                    self.heard(now_us);
-                }
+                // The controller lives; and it says again what it has taken.
+                self.advance(now_us, telemetry.next, telemetry.room);
                 Some(Event::Telemetry(telemetry))
             }
             Report::Finished { ticks, residual, hash } => {
                 self.finished = true;
                 Some(Event::Finished { ticks, residual, hash })
             }
+            Report::Ended(ending) => {
+                self.finished = true;
+                Some(Event::Ended(ending))
+            }
+            Report::Done { number, outcome } => {
+                if number != self.action_number || self.action_tries == 0 {
+                    return None;
+                }
+                let action = self.actions.pop_front()?;
+                self.action_number = self.action_number.wrapping_add(1);
+                (self.action_sent_us, self.action_tries) = (None, 0);
+                Some(Event::Done(action, outcome))
+            }
         }
     }
 
     /// The frame that stops the motion at once.
     pub fn abort(&self) -> Option<Frame> {
-        encode(self.next as u16, &Command::Abort)
+        encode(self.session, self.next as u16, &Command::Abort)
     }
 
     /// Why the job failed, if it did.
     pub fn error(&self) -> Option<SenderError> {
         self.error
+    }
+
+    /// Commands of the job that were sent at least once.
+    pub fn sent(&self) -> u32 {
+        self.sent
+    }
+
+    /// Commands of the job that the controller has taken.
+    pub fn acknowledged(&self) -> u32 {
+        self.acknowledged
     }
 
     /// Whether the controller has reported the end of the job.
@@ -257,12 +362,13 @@ impl<'a> Sender<'a> {
     /// The command at `index` of the script; none at its end, and none behind `Hello` before that was answered.
     fn command(&self, index: u32) -> Option<Command> {
         if index == 0 {
-            return Some(Command::Hello { version: VERSION });
+            return Some(Command::Hello { version: VERSION, session: self.session });
         }
         self.capacity?;
+        let header = self.header?;
         let run = self.run_index();
         match index {
-            1 => Some(Command::Begin(*self.header)),
+            1 => Some(Command::Begin(*header)),
             _ if index == run => Some(Command::Run),
             _ => self.pieces.get(self.pieces_before(index) as usize).copied().map(Command::Piece),
         }

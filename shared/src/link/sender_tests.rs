@@ -15,6 +15,8 @@ use crate::fixed::Fixed;
 use crate::pace::PaceLimits;
 use crate::piece::{Order, Shape};
 
+const SESSION: u32 = 0x1234_5678;
+
 const HEADER: Header<f32> =
     Header { weight: 0.0, order: Order::First, closed: false, tolerance: 1e-3, rest: false, pace: PaceLimits::USUAL };
 
@@ -55,7 +57,14 @@ impl Model {
         let ack =
             |model: &Self| Report::Ack { next: model.receiver.next(), room: (model.capacity - model.queued) as u16 };
         Some(match self.receiver.turn(found) {
-            Turn::Take(_, Command::Hello { .. }) => Report::Hello { version: VERSION, capacity: self.capacity as u16 },
+            Turn::Take(_, Command::Hello { session, .. }) => {
+                if session != self.receiver.session() {
+                    self.receiver.open(session);
+                    self.decoder.enter(session);
+                }
+                let identity = Identity { capacity: self.capacity as u16, ..Identity::default() };
+                Report::Hello { version: VERSION, session, identity }
+            }
             Turn::Take(sequence, Command::Piece(piece)) if self.faulty == Some(piece.origin[0].0) => {
                 Report::Refused { sequence, reason: Refusal::Path(PathError::Cusp) }
             }
@@ -69,7 +78,7 @@ impl Model {
                 self.running |= command == Command::Run;
                 ack(self)
             }
-            Turn::Repeated => ack(self),
+            Turn::Repeated | Turn::RepeatedAction(_) | Turn::Ignore => ack(self),
             Turn::Refuse(reason) => Report::Refused { sequence: self.receiver.next(), reason: Refusal::Link(reason) },
         })
     }
@@ -77,7 +86,7 @@ impl Model {
 
 /// Runs a job over a line that treats each frame as `fates` say, in turn: 0 loses it, 1 doubles it, 2 damages it, others pass.
 fn converse(pieces: &[Piece<f32>], model: &mut Model, fates: &[u8]) -> (Option<SenderError>, u32) {
-    let mut sender = Sender::new(&HEADER, pieces);
+    let mut sender = Sender::new(SESSION, &HEADER, pieces);
     let mut fates = fates.iter().copied();
     let (mut down, mut up) = (VecDeque::new(), VecDeque::new());
     for step in 0..200_000_u64 {
@@ -87,13 +96,13 @@ fn converse(pieces: &[Piece<f32>], model: &mut Model, fates: &[u8]) -> (Option<S
         }
         for byte in down.drain(..) {
             if let Some(report) = model.hear(byte) {
-                travel(&mut up, &encode(0, &report).unwrap(), fates.next());
+                travel(&mut up, &said(&report), fates.next());
             }
         }
         if model.running && model.queued > 0 {
             model.queued -= 1;
             let room = (model.capacity - model.queued) as u16;
-            travel(&mut up, &encode(0, &Report::Ack { next: model.receiver.next(), room }).unwrap(), fates.next());
+            travel(&mut up, &said(&Report::Ack { next: model.receiver.next(), room }), fates.next());
         }
         for byte in up.drain(..) {
             sender.receive(now, byte);
@@ -104,6 +113,11 @@ fn converse(pieces: &[Piece<f32>], model: &mut Model, fates: &[u8]) -> (Option<S
         }
     }
     (sender.error(), sender.resent())
+}
+
+fn said(report: &Report) -> Frame {
+    let session = if matches!(report, Report::Hello { .. }) { NO_SESSION } else { SESSION };
+    encode(session, 0, report).unwrap()
 }
 
 fn travel(line: &mut VecDeque<u8>, frame: &[u8], fate: Option<u8>) {
@@ -135,7 +149,7 @@ fn a_refused_piece_is_named_and_nothing_runs() {
 
 #[test]
 fn a_dead_line_ends_in_an_error() {
-    let mut sender = Sender::new(&HEADER, &[]);
+    let mut sender = Sender::new(SESSION, &HEADER, &[]);
     let sent = (0..1_000).filter(|&step| sender.poll(step * 10_000).is_some()).count();
     assert_eq!((sent, sender.error()), (TRIES as usize, Some(SenderError::Lost { reason: None })));
 }

@@ -8,11 +8,14 @@ use rigless::chip::Timeline;
 use rigless::chip::uart::Peer;
 use rigless::snapshot::Store;
 use rigless::time::VirtualNanos;
-use shared::link::{Decoder, Event, Report, Sender, SenderError, Telemetry};
+use shared::link::{Decoder, Event, Received, Report, Sender, SenderError, Telemetry};
 use shared::piece::{Header, Piece};
 
 /// The controller has its receiver on by then; what comes before is lost, as on a bench.
 const POWER_UP_US: u64 = 5_000;
+
+/// The session of a conversation. The board starts anew each time, so that it may be the same.
+pub const SESSION: u32 = 0x0b0a_4d01;
 
 /// Whoever speaks to the controller.
 pub trait Talker: Send {
@@ -85,7 +88,7 @@ pub struct JobTalker {
 impl JobTalker {
     /// A talker with this job. The job is kept for the life of the process: the sender borrows it, and there are few.
     pub fn new(header: Header<f32>, pieces: Vec<Piece<f32>>) -> Self {
-        let sender = Sender::new(Box::leak(Box::new(header)), pieces.leak());
+        let sender = Sender::new(SESSION, Box::leak(Box::new(header)), pieces.leak());
         Self { sender, finished: None, telemetry: None }
     }
 
@@ -105,7 +108,7 @@ impl Talker for JobTalker {
         match self.sender.receive(now_us, byte) {
             Some(Event::Finished { ticks, residual, hash }) => self.finished = Some((ticks, residual, hash)),
             Some(Event::Telemetry(telemetry)) => self.telemetry = Some(telemetry),
-            Some(Event::Hello(_) | Event::Failed(_)) | None => {}
+            Some(Event::Hello(_) | Event::Failed(_) | Event::Ended(_) | Event::Done(..)) | None => {}
         }
     }
 
@@ -136,15 +139,17 @@ impl Script {
         let lines: VecDeque<_> =
             lines.into_iter().enumerate().map(|(k, line)| (POWER_UP_US + k as u64 * gap_us, line)).collect();
         let until_us = POWER_UP_US + lines.len() as u64 * gap_us;
-        Self { lines, until_us, ..Self::default() }
+        let mut decoder = Decoder::new();
+        decoder.enter(SESSION);
+        Self { lines, until_us, decoder, ..Self::default() }
     }
 }
 
 impl Talker for Script {
     fn receive(&mut self, now_us: u64, byte: u8) {
         self.now_us = now_us;
-        if let Some(Ok((_, report))) = self.decoder.push(byte) {
-            self.reports.push(report);
+        if let Some(Ok(Received { message, .. })) = self.decoder.push(byte) {
+            self.reports.push(message);
         }
     }
 

@@ -4,7 +4,7 @@ mod common;
 
 use board::image::Image;
 use board::jobs::{Kind, job};
-use board::line::{Script, lock, share};
+use board::line::{SESSION, Script, lock, share};
 use board::probe::Seen;
 use board::run::run;
 use common::image;
@@ -12,7 +12,7 @@ use shared::complex::Complex;
 use shared::error::PathError;
 use shared::feed::Ramp;
 use shared::fixed::Fixed;
-use shared::link::{Command, FRAME_SIZE, FrameError, LinkError, Refusal, Report, VERSION, encode};
+use shared::link::{Command, FRAME_SIZE, FrameError, LinkError, NO_SESSION, Refusal, Report, VERSION, encode};
 use shared::piece::{Header, Order, Piece, Shape};
 
 /// Long enough for the answer to come back and for many ticks to show what they do.
@@ -27,11 +27,12 @@ fn say(image: &Image, lines: Vec<Vec<u8>>) -> (Vec<Report>, Seen) {
 }
 
 fn frame(sequence: u16, command: &Command) -> Vec<u8> {
-    encode(sequence, command).unwrap().to_vec()
+    let session = if matches!(command, Command::Hello { .. }) { NO_SESSION } else { SESSION };
+    encode(session, sequence, command).unwrap().to_vec()
 }
 
 fn hello() -> Vec<u8> {
-    frame(0, &Command::Hello { version: VERSION })
+    frame(0, &Command::Hello { version: VERSION, session: SESSION })
 }
 
 /// The refusals among some reports.
@@ -154,7 +155,7 @@ fn faulty_frames_are_refused_and_forgotten() {
     truncated.push(0);
     let mut oversized = vec![7; 4 * FRAME_SIZE];
     oversized.push(0);
-    let unknown = encode(1, &(77_u8, [1_u8; 9])).unwrap().to_vec();
+    let unknown = encode(SESSION, 1, &(77_u8, [1_u8; 9])).unwrap().to_vec();
     let gap = frame(5, &Command::Run);
 
     let (reports, seen) = say(&image, vec![hello(), corrupted, truncated, oversized, unknown, gap, begin]);
@@ -181,7 +182,7 @@ fn faulty_frames_are_refused_and_forgotten() {
 #[test]
 fn a_start_without_a_job_and_another_version_are_refused() {
     let image = image();
-    let lines = vec![hello(), frame(1, &Command::Run), frame(0, &Command::Hello { version: VERSION + 1 })];
+    let lines = vec![hello(), frame(1, &Command::Run), frame(0, &Command::Hello { version: VERSION + 1, session: SESSION })];
     let (reports, seen) = say(&image, lines);
     assert_eq!(refusals(&reports), [Refusal::NoJob, Refusal::Version { version: VERSION }]);
     assert!(!seen.moved);

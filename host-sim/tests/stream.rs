@@ -1,0 +1,93 @@
+//! `hodograph stream` and `monitor` against a controller on a TCP port of this process.
+#![allow(clippy::unwrap_used, missing_docs, reason = "a failed test says where")]
+
+use std::io::{ErrorKind, Read, Write};
+use std::net::TcpListener;
+use std::process::{Command, Output};
+use std::thread;
+
+use host_sim::controller::{Controller, Settings};
+
+/// A controller on a port of its own, which runs as fast as it can; it serves so many connections, one after another.
+fn controller(connections: usize, fault: u8) -> String {
+    let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+    let port = format!("tcp:{}", listener.local_addr().unwrap());
+    thread::spawn(move || {
+        let mut controller = Controller::new(Settings::default());
+        controller.set_fault(fault);
+        for stream in listener.incoming().take(connections) {
+            let mut stream = stream.unwrap();
+            stream.set_read_timeout(Some(std::time::Duration::from_micros(200))).unwrap();
+            let mut buffer = [0; 1024];
+            loop {
+                match stream.read(&mut buffer) {
+                    Ok(0) => break,
+                    Ok(count) => controller.receive(&buffer[..count]),
+                    Err(error) if matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::TimedOut) => {}
+                    Err(_) => break,
+                }
+                for _ in 0..20 {
+                    controller.tick();
+                }
+                if stream.write_all(&controller.take_output()).is_err() {
+                    break;
+                }
+            }
+        }
+    });
+    port
+}
+
+fn hodograph(arguments: &[&str]) -> Output {
+    let job = concat!(env!("CARGO_MANIFEST_DIR"), "/../examples/farouki2018.toml");
+    let arguments = arguments.iter().map(|&argument| if argument == "JOB" { job } else { argument });
+    Command::new(env!("CARGO_BIN_EXE_hodograph")).args(arguments).output().unwrap()
+}
+
+fn json(output: &Output) -> serde_json::Value {
+    let errors = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{errors}");
+    serde_json::from_slice(&output.stdout).unwrap()
+}
+
+/// The controller does to the last bit what the simulator does.
+#[test]
+fn a_job_arrives_and_runs_as_simulated() {
+    let port = controller(1, 0);
+    let streamed = json(&hodograph(&["stream", "JOB", "--port", &port, "--json", "-"]));
+    let simulated = json(&hodograph(&["simulate", "JOB", "--json", "-"]));
+    assert_eq!(streamed["setpoint_hash"], simulated["setpoint_hash"]);
+    assert_eq!(streamed["ticks"], simulated["ticks"]);
+    assert_eq!(streamed["sent"], streamed["acknowledged"]);
+    assert_eq!(streamed["resent"], 0);
+}
+
+#[test]
+fn a_monitor_sees_the_controller() {
+    let port = controller(1, 7);
+    let output = hodograph(&["monitor", "--port", &port, "--json", "--count", "2", "--every", "20"]);
+    assert!(output.status.success());
+    let text = String::from_utf8(output.stdout).unwrap();
+    let lines: Vec<serde_json::Value> = text.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+    assert_eq!(lines.len(), 2);
+    assert_eq!((&lines[1]["state"], &lines[1]["fault"]), (&"fault".into(), &7.into()));
+}
+
+/// One sentence, and the status that says whose fault it is.
+#[test]
+fn what_cannot_be_is_said_in_one_sentence() {
+    // A port that was free a moment ago: nobody listens there.
+    let free = format!("tcp:{}", TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap());
+    let faulty = controller(1, 3);
+    for (port, status, said) in [
+        (free.as_str(), 2, "cannot be opened"),
+        ("tcp:nowhere", 2, "cannot be opened"),
+        ("no-such-port", 2, "there is no such port"),
+        (faulty.as_str(), 1, "the controller has fault 3"),
+    ] {
+        let output = hodograph(&["stream", "JOB", "--port", port]);
+        let errors = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(status), "{port}: {errors}");
+        assert!(errors.contains(said) && errors.trim_end().lines().count() == 1, "{port}: {errors}");
+    }
+}

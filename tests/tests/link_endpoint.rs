@@ -1,0 +1,185 @@
+//! A controller's end of the link against bytes of any kind, against actions, and against a host that vanishes.
+#![allow(clippy::unwrap_used, reason = "a failed test says where")]
+
+use host_sim::controller::{Alone, Controller, Settings, checksum};
+use proptest::prelude::*;
+use shared::complex::Complex;
+use shared::executor::State;
+use shared::fixed::Fixed;
+use shared::link::{Action, Answer, Chunk, Command, Decoder, NO_SESSION, Received, Refusal, Report, VERSION, encode};
+use shared::motion::MotionCommand;
+use shared::pace::PaceLimits;
+use shared::piece::{Header, Order, Piece, Shape};
+
+const SESSION: u32 = 0x0051_0e55;
+
+const HEADER: Header<f32> =
+    Header { weight: 0.0, order: Order::First, closed: false, tolerance: 1e-3, rest: true, pace: PaceLimits::USUAL };
+
+/// A line of 20 mm at 10 mm/s: two seconds.
+fn line() -> Piece<f32> {
+    let end = Fixed::from_mm(20.0_f32);
+    Piece {
+        origin: [Fixed(end.0 / 2), Fixed(0)],
+        shape: Shape::Line { chord: Complex::new(20.0, 0.0) },
+        interval: [0.0, 1.0],
+        feed: 10.0,
+        start: None,
+        end: None,
+        further: None,
+        last: Some([end, Fixed(0), Fixed(0)]),
+    }
+}
+
+fn say(controller: &mut Controller, sequence: u16, command: &Command) -> Vec<Report> {
+    let session = if matches!(command, Command::Hello { .. }) { NO_SESSION } else { SESSION };
+    // Telemetry of ticks before is no answer.
+    controller.take_output();
+    controller.receive(&encode(session, sequence, command).unwrap());
+    let mut decoder = Decoder::new();
+    decoder.enter(SESSION);
+    let said = |found: Result<Received<Report>, _>| found.unwrap().message;
+    controller.take_output().into_iter().filter_map(|byte| decoder.push(byte)).map(said).collect()
+}
+
+fn open(settings: Settings) -> Controller {
+    let mut controller = Controller::new(settings);
+    let answer = say(&mut controller, 0, &Command::Hello { version: VERSION, session: SESSION });
+    assert!(matches!(answer[..], [Report::Hello { session: SESSION, .. }]), "{answer:?}");
+    controller
+}
+
+fn running(settings: Settings) -> Controller {
+    let mut controller = open(settings);
+    say(&mut controller, 1, &Command::Begin(HEADER));
+    say(&mut controller, 2, &Command::Piece(line()));
+    assert!(matches!(say(&mut controller, 3, &Command::Run)[..], [Report::Ack { next: 4, .. }]));
+    controller
+}
+
+fn act(controller: &mut Controller, number: u16, action: Action) -> Result<Answer, Refusal> {
+    match say(controller, number, &Command::Act(action))[..] {
+        [Report::Done { number: found, outcome }] if found == number => outcome,
+        ref other => panic!("{other:?}"),
+    }
+}
+
+fn pass(controller: &mut Controller, ticks: u32) {
+    for _ in 0..ticks {
+        controller.tick();
+    }
+}
+
+/// A host that falls silent leaves what was configured: the end of the job, or rest on the path before it.
+#[test]
+fn a_host_that_vanishes_leaves_what_was_configured() {
+    for (alone, state) in [(Alone::Finish, State::Finished), (Alone::Brake, State::Held)] {
+        let mut controller = running(Settings { alone, ..Settings::default() });
+        pass(&mut controller, 8_000);
+        assert_eq!(controller.state(), state, "{alone:?}");
+    }
+}
+
+/// A late copy of a hold, a resume or the hello itself changes nothing.
+#[test]
+fn nothing_is_done_twice() {
+    let mut controller = running(Settings::default());
+    pass(&mut controller, 100);
+    let [hold, resume] = [MotionCommand::Hold, MotionCommand::Resume].map(Action::Motion);
+    assert_eq!(act(&mut controller, 0, hold), Ok(Answer::Done));
+    pass(&mut controller, 600);
+    assert_eq!(controller.state(), State::Held);
+    assert_eq!(act(&mut controller, 1, resume), Ok(Answer::Done));
+    assert_eq!(say(&mut controller, 0, &Command::Act(hold)), []);
+    say(&mut controller, 0, &Command::Hello { version: VERSION, session: SESSION });
+    pass(&mut controller, 4_000);
+    assert_eq!(controller.state(), State::Finished);
+}
+
+#[test]
+fn another_version_is_refused() {
+    let mut controller = Controller::new(Settings::default());
+    let answer = say(&mut controller, 0, &Command::Hello { version: VERSION + 1, session: SESSION });
+    assert_eq!(answer, [Report::Refused { sequence: 0, reason: Refusal::Version { version: VERSION } }]);
+}
+
+/// A configuration image goes there in chunks and comes back the same; one that is not whole is not kept.
+#[test]
+fn a_configuration_image_goes_there_and_back() {
+    let image: Vec<u8> = (0..1_000_u32).map(|k| (k * k % 251) as u8).collect();
+    let mut controller = open(Settings::default());
+    let mut number = 0..;
+    let mut ask = |action| act(&mut controller, number.next().unwrap(), action);
+    for (k, part) in image.chunks(64).enumerate() {
+        let chunk = Chunk::new(part).unwrap();
+        assert_eq!(ask(Action::WriteImage { offset: 64 * k as u16, chunk }), Ok(Answer::Done));
+    }
+    assert_eq!(ask(Action::CommitImage { length: 1_000, crc: 1 }), Err(Refusal::Image));
+    assert_eq!(ask(Action::CommitImage { length: 1_000, crc: checksum(&image) }), Ok(Answer::Done));
+    let mut back = Vec::new();
+    while let Ok(Answer::Image { length: 1_000, chunk, .. }) = ask(Action::ReadImage { offset: back.len() as u16 }) {
+        match chunk.bytes().unwrap() {
+            [] => break,
+            bytes => back.extend_from_slice(bytes),
+        }
+    }
+    assert_eq!(back, image);
+    let chunk = Chunk::new(&[1; 64]).unwrap();
+    assert_eq!(ask(Action::WriteImage { offset: 4_090, chunk }), Err(Refusal::Range));
+}
+
+#[test]
+fn an_override_outside_its_range_is_refused() {
+    let mut controller = running(Settings::default());
+    for (number, percent) in [0, 201, 255].into_iter().enumerate() {
+        let action = Action::Motion(MotionCommand::Override { percent });
+        assert_eq!(act(&mut controller, number as u16, action), Err(Refusal::Range));
+    }
+}
+
+proptest! {
+    /// Any bytes at all: no panic, and nothing moves.
+    #[test]
+    fn noise_moves_nothing(bytes in proptest::collection::vec(0_u8.., 0..3_000)) {
+        let mut controller = open(Settings::default());
+        controller.receive(&bytes);
+        pass(&mut controller, 50);
+        prop_assert_eq!(controller.state(), State::Idle);
+        prop_assert_eq!(controller.loaded(), 0);
+    }
+
+    /// Whole frames with any content under them, which the CRC does not stop: no panic, and what the decoder lets through keeps to
+    /// its range or is refused.
+    #[test]
+    fn whole_frames_of_anything_are_taken_in_range_or_refused(
+        content in proptest::collection::vec((0_u8..6, proptest::collection::vec(0_u8.., 0..100)), 0..20),
+    ) {
+        let mut controller = open(Settings::default());
+        let mut next = 1_u16;
+        for (kind, bytes) in content {
+            // A tuple of bytes has no length in front, as a message has none; the first one says which command it is.
+            let mut body = vec![kind];
+            body.extend(bytes);
+            controller.receive(&raw(next, &body));
+            next += u16::from(controller.take_output().len() > 100);
+            controller.tick();
+        }
+        prop_assert!(controller.queued() <= 63);
+        let setpoint = controller.setpoint();
+        prop_assert!(setpoint.iter().all(|coordinate| coordinate.is_in_reach()));
+    }
+}
+
+/// A whole frame around these bytes.
+fn raw(sequence: u16, bytes: &[u8]) -> Vec<u8> {
+    struct Raw<'a>(&'a [u8]);
+    impl serde::Serialize for Raw<'_> {
+        fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+            use serde::ser::SerializeTuple;
+            let mut tuple = serializer.serialize_tuple(self.0.len())?;
+            self.0.iter().try_for_each(|byte| tuple.serialize_element(byte))?;
+            tuple.end()
+        }
+    }
+    encode(SESSION, sequence, &Raw(bytes)).unwrap().to_vec()
+}

@@ -1,0 +1,135 @@
+//! What the link carries: bytes and times of the real frames, acknowledgements and telemetry included, at 8N1.
+//!
+//! `cargo test -p tests --test link_speed -- --nocapture` prints the figures that stand in `docs/link.md`.
+#![allow(clippy::unwrap_used, reason = "a failed test says where")]
+
+use std::collections::VecDeque;
+
+use host_sim::controller::{Controller, Settings};
+use host_sim::job::Job;
+use host_sim::path::Path;
+use shared::executor::State;
+use shared::link::{Command, Event, Report, Sender, encode};
+use shared::piece::{Header, Order, Piece, Shape};
+
+const SESSION: u32 = 0x1234_5678;
+
+/// One direction of a serial line: so many bytes a second, ten bits each.
+struct Wire {
+    byte_us: f64,
+    free_at: f64,
+    bytes: VecDeque<(f64, u8)>,
+    carried: u64,
+}
+
+impl Wire {
+    fn new(baud: u32) -> Self {
+        Self { byte_us: 1e7 / f64::from(baud), free_at: 0.0, bytes: VecDeque::new(), carried: 0 }
+    }
+
+    fn send(&mut self, now: f64, bytes: &[u8]) {
+        for &byte in bytes {
+            self.free_at = self.free_at.max(now) + self.byte_us;
+            self.bytes.push_back((self.free_at, byte));
+        }
+        self.carried += bytes.len() as u64;
+    }
+
+    fn receive(&mut self, now: f64) -> Option<u8> {
+        let (due, _) = self.bytes.front()?;
+        if *due <= now { self.bytes.pop_front().map(|(_, byte)| byte) } else { None }
+    }
+}
+
+struct Seen {
+    /// Time in s until all pieces were taken.
+    loaded_s: f64,
+    starved: bool,
+    resent: u32,
+    down: u64,
+    up: u64,
+}
+
+/// Sends a job over a line of `baud` to a controller of the firmware's size, in virtual time.
+fn send(baud: u32, header: &Header<f32>, pieces: &[Piece<f32>], until_loaded: bool) -> Seen {
+    const STEPS: u64 = 16;
+    let mut controller = Controller::new(Settings::default());
+    let mut sender = Sender::new(SESSION, header, pieces);
+    let (mut down, mut up) = (Wire::new(baud), Wire::new(baud));
+    let mut seen = Seen { loaded_s: 0.0, starved: false, resent: 0, down: 0, up: 0 };
+    for step in 0.. {
+        let now = step as f64 * 1e6 / 1024.0 / STEPS as f64;
+        // A port takes what it can send soon, not the whole job.
+        while down.bytes.len() < 256
+            && let Some(frame) = sender.poll(now as u64)
+        {
+            down.send(now, &frame);
+        }
+        while let Some(byte) = down.receive(now) {
+            controller.receive(&[byte]);
+        }
+        if step % STEPS == 0 {
+            controller.tick();
+            seen.starved |= matches!(controller.state(), State::Starved | State::Braking);
+        }
+        up.send(now, &controller.take_output());
+        let mut finished = false;
+        while let Some(byte) = up.receive(now) {
+            finished |= matches!(sender.receive(now as u64, byte), Some(Event::Finished { .. }));
+        }
+        assert_eq!(sender.error(), None);
+        let loaded = sender.acknowledged_pieces() as usize == pieces.len();
+        if loaded && seen.loaded_s == 0.0 {
+            seen.loaded_s = now / 1e6;
+        }
+        if finished || (until_loaded && loaded) {
+            break;
+        }
+        assert!(now < 1e9, "the job does not end");
+    }
+    Seen { resent: sender.resent(), down: down.carried, up: up.carried, ..seen }
+}
+
+fn paper() -> (Header<f32>, Vec<Piece<f32>>) {
+    let job = concat!(env!("CARGO_MANIFEST_DIR"), "/../examples/farouki2018.toml");
+    let path = Path::new(&Job::read(job).unwrap(), Order::First).unwrap();
+    let pieces = path.wire().collect();
+    (path.header, pieces)
+}
+
+#[test]
+fn the_link_is_fast_enough() {
+    let (header, pieces) = paper();
+    let ph: Vec<_> = pieces.iter().filter(|piece| matches!(piece.shape, Shape::Ph { .. })).collect();
+    let bytes: Vec<usize> =
+        ph.iter().map(|piece| encode(SESSION, 300, &Command::Piece(**piece)).unwrap().len()).collect();
+    let (mean, most) = (bytes.iter().sum::<usize>() as f64 / bytes.len() as f64, *bytes.iter().max().unwrap());
+    let ack = encode(SESSION, 300, &Report::Ack { next: 300, room: 60 }).unwrap().len();
+    println!("a PH piece takes {mean:.1} bytes in the mean and {most} at most; its acknowledgement {ack}");
+
+    // A long chain of PH pieces that run as fast as they come: the paper's first one again and again.
+    let (fast, chain) = chain(&header, ph[0], 600);
+    for (baud, least) in [(115_200, 100.0), (1_000_000, 600.0)] {
+        let seen = send(baud, &fast, &chain, true);
+        let rate = chain.len() as f64 / seen.loaded_s;
+        println!(
+            "{baud} baud: {rate:.0} PH pieces/s; {} bytes down and {} up for {} pieces; resent {}",
+            seen.down,
+            seen.up,
+            chain.len(),
+            seen.resent
+        );
+        assert!(rate >= least, "{rate} pieces/s at {baud} baud");
+        assert_eq!(seen.resent, 0);
+    }
+    let seen = send(115_200, &header, &pieces, false);
+    assert!(!seen.starved, "the paper's path starves");
+    assert_eq!(seen.resent, 0);
+}
+
+/// `count` copies of a piece at a feed that no line keeps up with. They all lie on one another, which a tolerance for gaps of a
+/// metre does not mind: it is the line that is measured.
+fn chain(header: &Header<f32>, piece: &Piece<f32>, count: usize) -> (Header<f32>, Vec<Piece<f32>>) {
+    let piece = Piece { start: None, end: None, feed: 200_000.0, last: None, ..*piece };
+    (Header { closed: false, rest: false, tolerance: 1e3, ..*header }, vec![piece; count])
+}
