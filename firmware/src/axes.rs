@@ -1,30 +1,24 @@
-//! The axes of the machine that this firmware is built for.
+//! The axes of the machine that this firmware is built for: servos, or with the feature `steps` step axes.
 //!
-//! A bench-top mill: ball screws of 5 mm lead, encoders of 1000 lines read four-fold on the screws, and drives that close their own
-//! velocity loop from an analog command of +-10 V.
+//! Both are an `Axes` of the same methods, and the tick does not know which it moves. Settings are constants here until a machine's
+//! own are kept in flash.
 
-use shared::servo::{DriveSettings, Servo, ServoSettings};
+#[cfg(not(feature = "steps"))]
+mod servos;
+#[cfg(feature = "steps")]
+mod steps;
 
-/// Axes with a servo: x and y.
-pub const AXES: usize = 2;
+#[cfg(not(feature = "steps"))]
+pub use servos::{AXES, Axes, FULL_COMMAND};
+#[cfg(feature = "steps")]
+pub use steps::{AXES, Axes};
 
-/// The velocity that a drive's full command stands for, in mm/s.
-pub const FULL_COMMAND: f64 = 250.0;
-
-const AXIS: ServoSettings = ServoSettings {
-    counts_per_mm: 800.0,
-    position_gain: 50.0,
-    integral_gain: 0.0,
-    velocity_feedforward: 1.0,
-    acceleration_feedforward: 0.0,
-    drive: DriveSettings::Velocity { lag: 0.0, limit: FULL_COMMAND },
-};
-
-/// The servos of all axes. Load time.
-pub fn settings() -> [Servo<f32>; AXES] {
-    [AXIS, AXIS].map(|axis| match axis.activate(f64::from(shared::TICK)) {
-        Ok(servo) => servo,
-        // The settings are constants above: the first start of an image with faulty ones ends here, with the drives off.
-        Err(_) => cortex_m::asm::udf(),
-    })
+/// What stops the axes in the middle of a motion. The numbers are the mailbox's.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(not(feature = "steps"), allow(dead_code, reason = "servo axes have no ring"))]
+pub enum Fault {
+    /// The tick came too late to fill its half of the step ring, or the ring is not played.
+    MissedHalf = 1,
+    /// An axis was asked for more steps than it can make.
+    Steps = 2,
 }

@@ -1,16 +1,15 @@
-//! What a tick does, without the hardware: the path's executor and the servo axes.
+//! What a tick does: directives, the path's executor, and the axes that follow it.
 
 use heapless::spsc::{Consumer, Queue};
 use shared::active::ActivePiece;
 use shared::executor::{Executor, Pieces, State};
-use shared::fixed::{Fixed, Position};
+use shared::fixed::Fixed;
 use shared::hash::SetpointHash;
 use shared::loader::Motion;
 use shared::motion::MotionCommand;
-use shared::servo::{Servo, ServoState};
 use shared::supply::Source;
 
-use crate::axes::{AXES, settings};
+use crate::axes::{Axes, Fault};
 use crate::mailbox::{Mailbox, Snapshot};
 
 /// Length of the queue of pieces; it holds one less. A power of two.
@@ -43,39 +42,37 @@ pub struct Control {
     pieces: Source<'static, f32>,
     directives: Consumer<'static, Directive>,
     executor: Executor<f32>,
-    servos: [(Servo<f32>, ServoState<f32>); AXES],
+    axes: Axes,
     hash: SetpointHash,
     ticks: u32,
-    commands: [f32; AXES],
 }
 
 impl Control {
-    /// At rest at the origin, with the encoders at zero.
-    pub fn new(pieces: Source<'static, f32>, directives: Consumer<'static, Directive>) -> Self {
+    /// At rest at the origin, with these axes.
+    pub fn new(pieces: Source<'static, f32>, directives: Consumer<'static, Directive>, axes: Axes) -> Self {
         Self {
             pieces,
             directives,
             executor: Executor::new(shared::TICK, [Fixed(0); 3]),
-            servos: settings().map(|servo| (servo, servo.at_rest(Fixed(0), 0))),
+            axes,
             hash: SetpointHash::new(),
             ticks: 0,
-            commands: [0.0; AXES],
         }
     }
 
-    /// One tick: from the encoders' counts to the commands of the drives. `stopped` gives up every motion.
+    /// One tick: from where the axes are to what they do next. `stopped` gives up every motion.
     ///
     /// A start or a stop takes a tick of its own, so that none does both: the path's first tick is the one after.
     #[inline(always)]
-    pub fn tick(&mut self, counts: [i32; AXES], stopped: bool) -> [f32; AXES] {
+    pub fn tick(&mut self, stopped: bool) -> Result<(), Fault> {
+        self.axes.sense();
         match self.directives.dequeue() {
             None if !stopped => self.walk(),
-            Some(Directive::Start(motion, point)) if !stopped => self.start(&motion, point, counts),
+            Some(Directive::Start(motion, point)) if !stopped => self.start(&motion, point),
             Some(Directive::Command(command)) if !stopped => self.change(command),
-            _ => self.stop(),
+            _ => self.stop(stopped),
         }
-        self.commands = self.command(self.executor.setpoint(), counts);
-        self.commands
+        self.axes.follow(self.executor.setpoint())
     }
 
     #[inline(always)]
@@ -94,33 +91,24 @@ impl Control {
         self.walk();
     }
 
-    #[inline(always)]
-    fn command(&mut self, setpoint: Position, counts: [i32; AXES]) -> [f32; AXES] {
-        let mut commands = [0.0; AXES];
-        let inputs = setpoint.into_iter().zip(counts);
-        for ((command, (servo, state)), (setpoint, count)) in commands.iter_mut().zip(&mut self.servos).zip(inputs) {
-            *command = servo.step(state, setpoint, count);
-        }
-        commands
-    }
-
     #[cold]
     #[inline(never)]
-    fn start(&mut self, motion: &Motion<f32>, [x, y]: [Fixed; 2], counts: [i32; AXES]) {
+    fn start(&mut self, motion: &Motion<f32>, [x, y]: [Fixed; 2]) {
         let position = [x, y, Fixed(0)];
         self.executor.stand_at(position);
         self.executor.begin(motion);
-        for ((servo, state), (coordinate, count)) in self.servos.iter_mut().zip(position.into_iter().zip(counts)) {
-            *state = servo.at_rest(coordinate, count);
-        }
+        self.axes.start(position);
         self.hash = SetpointHash::new();
         self.ticks = 0;
     }
 
     #[cold]
     #[inline(never)]
-    fn stop(&mut self) {
+    fn stop(&mut self, halt: bool) {
         self.executor.abort();
+        if halt {
+            self.axes.halt();
+        }
         self.pieces.discard();
     }
 
@@ -134,7 +122,7 @@ impl Control {
             setpoint: self.executor.setpoint(),
             hash: self.hash.value(),
             residual: self.executor.spare_time(),
-            commands: self.commands,
+            outputs: self.axes.outputs(),
             cycles,
         });
     }

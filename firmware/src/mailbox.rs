@@ -7,7 +7,7 @@ use core::sync::atomic::{AtomicBool, AtomicI32, AtomicU32, Ordering::Relaxed};
 
 use shared::fixed::{Fixed, Position};
 
-use crate::axes::AXES;
+use crate::axes::{AXES, Fault};
 
 /// The mailbox.
 #[unsafe(no_mangle)]
@@ -33,8 +33,8 @@ pub struct Mailbox {
     hash: [AtomicU32; 2],
     /// Time left in the last tick, in s, as the bits of an f32.
     residual: AtomicU32,
-    /// The drives' commands in mm/s, as the bits of f32.
-    commands: [AtomicU32; AXES],
+    /// What each axis was told: a drive's command in mm/s as the bits of an f32, or a position in steps.
+    outputs: [AtomicU32; AXES],
     /// Cycles of the core that this tick took up to here.
     cycles: AtomicU32,
     /// The most of these since the controller started.
@@ -43,6 +43,8 @@ pub struct Mailbox {
     stopped: AtomicBool,
     /// Whether the stop input is pressed now.
     pressed: AtomicBool,
+    /// What stopped the axes since the last `release`: the number of a `crate::axes::Fault`, or 0.
+    fault: AtomicU32,
 }
 
 /// What one tick leaves.
@@ -60,8 +62,8 @@ pub struct Snapshot {
     pub hash: u64,
     /// Time left in the last tick, in s.
     pub residual: f32,
-    /// The drives' commands, in mm/s.
-    pub commands: [f32; AXES],
+    /// What each axis was told, as the mailbox keeps it.
+    pub outputs: [u32; AXES],
     /// Cycles of the core that the tick took.
     pub cycles: u32,
 }
@@ -76,11 +78,12 @@ impl Mailbox {
             setpoint: [const { AtomicI32::new(0) }; 3],
             hash: [const { AtomicU32::new(0) }; 2],
             residual: AtomicU32::new(0),
-            commands: [const { AtomicU32::new(0) }; AXES],
+            outputs: [const { AtomicU32::new(0) }; AXES],
             cycles: AtomicU32::new(0),
             worst_cycles: AtomicU32::new(0),
             stopped: AtomicBool::new(false),
             pressed: AtomicBool::new(false),
+            fault: AtomicU32::new(0),
         }
     }
 
@@ -97,8 +100,8 @@ impl Mailbox {
         low.store(snapshot.hash as u32, Relaxed);
         high.store((snapshot.hash >> 32) as u32, Relaxed);
         self.residual.store(snapshot.residual.to_bits(), Relaxed);
-        for (word, command) in self.commands.iter().zip(snapshot.commands) {
-            word.store(command.to_bits(), Relaxed);
+        for (word, output) in self.outputs.iter().zip(snapshot.outputs) {
+            word.store(output, Relaxed);
         }
         self.cycles.store(snapshot.cycles, Relaxed);
         if snapshot.cycles > self.worst_cycles.load(Relaxed) {
@@ -123,7 +126,6 @@ impl Mailbox {
             let before = self.uptime();
             let [x, y, z] = &self.setpoint;
             let [low, high] = &self.hash;
-            let [first, second] = &self.commands;
             let snapshot = Snapshot {
                 state: self.state.load(Relaxed),
                 ticks: self.ticks.load(Relaxed),
@@ -131,7 +133,7 @@ impl Mailbox {
                 setpoint: [x, y, z].map(|word| Fixed(word.load(Relaxed))),
                 hash: u64::from(low.load(Relaxed)) | u64::from(high.load(Relaxed)) << 32,
                 residual: f32::from_bits(self.residual.load(Relaxed)),
-                commands: [first, second].map(|word| f32::from_bits(word.load(Relaxed))),
+                outputs: self.outputs.each_ref().map(|word| word.load(Relaxed)),
                 cycles: self.cycles.load(Relaxed),
             };
             // A tick came in between once at most, unless this task were slower than a period.
@@ -149,6 +151,13 @@ impl Mailbox {
         }
     }
 
+    /// The axes cannot go on. It holds like a stop.
+    #[cold]
+    pub fn set_fault(&self, fault: Fault) {
+        self.fault.store(fault as u32, Relaxed);
+        self.stopped.store(true, Relaxed);
+    }
+
     /// Whether every motion is to be given up.
     #[inline(always)]
     pub fn is_stopped(&self) -> bool {
@@ -157,6 +166,7 @@ impl Mailbox {
 
     /// Ends the stop, unless the input is still pressed.
     pub fn release(&self) {
+        self.fault.store(0, Relaxed);
         self.stopped.store(false, Relaxed);
         // The input may have been pressed since: its task is more urgent than any that calls this.
         if self.pressed.load(Relaxed) {

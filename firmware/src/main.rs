@@ -4,8 +4,8 @@
 //!
 //! | task | priority | woken by | does |
 //! | --- | --- | --- | --- |
-//! | `emergency_stop` | 15 | the stop input | switches the drives off, in hardware registers, before anything else |
-//! | `tick` | 14 | TIM2, 1024 times a second | one setpoint, two servo axes |
+//! | `emergency_stop` | 15 | the stop input | switches the drives and the pulses off, in hardware registers, before anything else |
+//! | `tick` | 14 | TIM2, 1024 times a second | one setpoint, two servo axes or three step axes |
 //! | `serial` | 8 | USART3 | moves bytes between the line and two queues |
 //! | `link` | 2 | `serial` and `idle` | reads frames, validates pieces, answers, reports |
 //! | `idle` | 0 | every interrupt | sleeps; wakes `link` for reports |
@@ -35,8 +35,9 @@ mod app {
     use heapless::spsc::Queue;
     use shared::supply::{Sink, Source};
 
+    use crate::axes::Axes;
     use crate::control::{Control, DIRECTIVES, Directive, Directives, PIECES, PieceQueue};
-    use crate::hardware::{self, Cycles, Drives, Encoders, SerialPort, StopInput, TickTimer};
+    use crate::hardware::{self, Cycles, SerialPort, StopInput, TickTimer, Watchdog};
     use crate::link::{Link, RX_BYTES, TX_BYTES};
     use crate::mailbox::MAILBOX;
 
@@ -49,8 +50,7 @@ mod app {
     #[local]
     struct Local {
         timer: TickTimer,
-        encoders: Encoders,
-        drives: Drives,
+        watchdog: Watchdog,
         control: Control,
         port: SerialPort,
         stop: StopInput,
@@ -71,14 +71,14 @@ mod app {
         let (to_send_producer, to_send_consumer) = cx.local.to_send.split();
 
         let board = hardware::start(cx.core, cx.device, received_producer, to_send_consumer);
-        let hardware::Board { timer, encoders, drives, port, stop, lamp } = board;
+        let hardware::Board { timer, actuators, watchdog, port, stop, lamp } = board;
         defmt::info!("hodograph {}: {} pieces, {} directives", env!("CARGO_PKG_VERSION"), PIECES, DIRECTIVES);
 
         let horizon: &'static AtomicU32 = cx.local.horizon;
         let (sink, source) = (Sink::new(piece_producer, horizon), Source::new(piece_consumer, horizon));
         let link = Link::new(received_consumer, to_send_producer, sink, directive_producer, lamp);
-        let control = Control::new(source, directive_consumer);
-        (Shared {}, Local { timer, encoders, drives, control, port, stop, link })
+        let control = Control::new(source, directive_consumer, Axes::new(actuators));
+        (Shared {}, Local { timer, watchdog, control, port, stop, link })
     }
 
     /// Sleeps between interrupts, and lets the link report.
@@ -101,22 +101,25 @@ mod app {
     fn emergency_stop(cx: emergency_stop::Context) {
         let pressed = cx.local.stop.acknowledge();
         if pressed {
-            Drives::off();
+            hardware::off();
         }
         MAILBOX.set_stop(pressed);
     }
 
     /// The tick: 1024 times a second, above everything but the stop input.
     ///
-    /// Must end within half a period (488 us); `budget.toml` holds what it takes. It reads the encoders, walks the path by one period,
-    /// commands two axes and leaves numbers for the reporter. No lock that a slower task holds, no logging, no panic.
-    #[task(binds = TIM2, priority = 14, local = [timer, encoders, drives, control])]
+    /// Must end within half a period (488 us); `budget.toml` holds what it takes. It looks where the axes are, walks the path by one
+    /// period, has the axes follow, which is a command for each drive or the next half of the step ring, feeds the watchdog, and leaves
+    /// numbers for the reporter. Axes that cannot follow are switched off. No lock that a slower task holds, no logging, no panic.
+    #[task(binds = TIM2, priority = 14, local = [timer, watchdog, control])]
     fn tick(cx: tick::Context) {
         let cycles = Cycles::start();
         cx.local.timer.acknowledge();
-        let counts = cx.local.encoders.read();
-        let commands = cx.local.control.tick(counts, MAILBOX.is_stopped());
-        cx.local.drives.write(commands);
+        if let Err(fault) = cx.local.control.tick(MAILBOX.is_stopped()) {
+            hardware::off();
+            MAILBOX.set_fault(fault);
+        }
+        cx.local.watchdog.feed();
         cx.local.control.publish(&MAILBOX, cycles.elapsed());
     }
 

@@ -10,7 +10,7 @@ use std::path::PathBuf;
 use clap::Args;
 use serde::{Deserialize, Serialize};
 
-use crate::build::firmware;
+use crate::build::{Axes, firmware};
 use crate::tools::{Failure, Outcome, board_cargo, check_board_compiler, compiler, output, root};
 
 /// The part by which a figure may grow unseen.
@@ -18,6 +18,10 @@ const GROWTH: f64 = 0.05;
 
 /// Instructions by which one stage may grow unseen: the border between two stages is no sharper (`tests/board/src/stages.rs`).
 const STAGE_BLUR: u32 = 4;
+
+/// Instructions of the whole interrupt with three step axes, at most: row, column, and bar.
+const STEP_BARS: [(&str, &str, u32); 3] =
+    [("steps 3 x 900000/s", "most", 36_000), ("steps 3 x 100000/s", "most", 6_000), ("steps at rest", "median", 1_500)];
 
 /// Instructions of curve, feed law and position on an offset PH piece, at most.
 const PIECE_BAR: u32 = 180;
@@ -91,9 +95,11 @@ pub fn check() -> Outcome {
 }
 
 fn measure() -> Outcome<Figures> {
-    let image = firmware()?;
+    let (tandem, image) = (firmware(Axes::Tandem)?, firmware(Axes::Servos)?);
     check_board_compiler()?;
-    let text = output(board_cargo(&["run", "--release", "--quiet"])?.args(["--", "budget", "--elf"]).arg(image))?;
+    let mut board = board_cargo(&["run", "--release", "--quiet"])?;
+    board.args(["--", "budget", "--elf"]).arg(image).arg("--tandem").arg(tandem);
+    let text = output(&mut board)?;
     let mut figures: Figures =
         serde_json::from_str(&text).map_err(|error| Failure::new(format!("the virtual board's figures: {error}")))?;
     figures.compiler = compiler()?.name;
@@ -138,13 +144,13 @@ impl Figures {
                 .into_iter()
                 .filter(|column| self.instructions.values().any(|row| row.contains_key(*column)))
                 .collect();
-        let _ = write!(text, "{:<12}", "instructions");
+        let _ = write!(text, "{:<20}", "instructions");
         columns.iter().for_each(|column| {
             let _ = write!(text, "{column:>13}");
         });
         text.push('\n');
         for (name, row) in &self.instructions {
-            let _ = write!(text, "{name:<12}");
+            let _ = write!(text, "{name:<20}");
             for column in &columns {
                 let _ = write!(text, "{:>13}", row.get(*column).map_or_else(String::new, u32::to_string));
             }
@@ -196,6 +202,12 @@ impl Figures {
             let most = self.instructions.get(kind).and_then(|row| row.get("most")).copied().unwrap_or(u32::MAX);
             if most > INTERRUPT_BAR {
                 faults.push(format!("the interrupt takes {most} instructions on {kind}; {INTERRUPT_BAR} are allowed"));
+            }
+        }
+        for (name, column, bar) in STEP_BARS {
+            let found = self.instructions.get(name).and_then(|row| row.get(column)).copied().unwrap_or(u32::MAX);
+            if found > bar {
+                faults.push(format!("the interrupt takes {found} instructions on {name}; {bar} are allowed"));
             }
         }
         faults.extend(self.forbidden.iter().map(|name| format!("the tick can reach {name}")));

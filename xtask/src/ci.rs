@@ -28,7 +28,8 @@ impl Ci {
         });
         tally.step("lints of the firmware", || {
             let firmware = ["--package", "firmware", "--profile", "firmware", "--target", TARGET, "--quiet"];
-            run(cargo(&["clippy"]).args(firmware).args(["--", "-D", "warnings"]))
+            run(cargo(&["clippy"]).args(firmware).args(["--", "-D", "warnings"]))?;
+            run(cargo(&["clippy"]).args(firmware).args(["--features", "tandem", "--", "-D", "warnings"]))
         });
         tally.step("lints of the virtual board", || {
             run(board_cargo(&["clippy", "--release", "--all-targets", "--quiet"])?.args(["--", "-D", "warnings"]))

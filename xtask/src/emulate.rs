@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use crate::build::firmware;
+use crate::build::{Axes, firmware};
 use crate::tools::{Failure, Outcome, board_cargo, cargo, check_board_compiler, run, target_dir};
 
 /// Run a job on the firmware's own image, on the virtual board
@@ -44,7 +44,7 @@ pub struct Emulate {
 impl Emulate {
     /// Prepares the job, builds the image, and runs it.
     pub fn run(self) -> Outcome {
-        let image = firmware()?;
+        let image = firmware(Axes::Servos)?;
         let job = self.prepare()?;
         check_board_compiler()?;
         let mut board = board_cargo(&["run", "--release", "--quiet"])?;

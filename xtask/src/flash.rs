@@ -4,7 +4,7 @@ use std::process::Command;
 
 use clap::{Args, ValueEnum};
 
-use crate::build::firmware;
+use crate::build::{Axes, firmware};
 use crate::tools::{Failure, Outcome, run};
 
 /// Build the firmware and flash it onto a board
@@ -14,6 +14,9 @@ pub struct Flash {
     /// The board at the debug probe
     #[arg(long, value_enum)]
     board: Board,
+    /// What it moves
+    #[arg(long, value_enum, default_value_t)]
+    axes: Axes,
 }
 
 /// A board that the firmware knows.
@@ -41,7 +44,7 @@ impl Flash {
                 "probe-rs, which speaks to the debug probe, is not installed; run `cargo install probe-rs-tools --locked`",
             ));
         }
-        let image = firmware()?;
+        let image = firmware(self.axes)?;
         let chip = self.board.chip();
         run(Command::new("probe-rs").args(["download", "--chip", chip]).arg(&image))?;
         run(Command::new("probe-rs").args(["reset", "--chip", chip]))

@@ -12,23 +12,18 @@ const ZERO: i32 = 2048;
 /// Codes per mm/s.
 const SCALE: f32 = (2047.0 / FULL_COMMAND) as f32;
 
-/// Bit number of the drives' enable output on port E.
-const ENABLE: u32 = 2;
-
 /// The drives of both axes.
 pub struct Drives {
     dac: pac::DAC,
 }
 
 impl Drives {
-    /// Switches the converters on at zero, and then the drives. The pins are analog by then, the enable pin an output.
+    /// Switches the converters on at zero. The pins are analog by then.
     pub fn new(dac: pac::DAC, rec: rec::Dac12) -> Self {
         let _ = rec.enable().reset();
         let mut drives = Self { dac };
         drives.write([0.0; AXES]);
         drives.dac.cr.modify(|_, w| w.en1().set_bit().en2().set_bit());
-        // SAFETY: port E's set/reset register is written in single stores that change this one pin only.
-        unsafe { (*pac::GPIOE::ptr()).bsrr.write(|w| w.bits(1 << ENABLE)) };
         drives
     }
 
@@ -38,12 +33,5 @@ impl Drives {
         let code = |command: f32| ZERO.wrapping_add((command * SCALE).to_int()) as u32 & 0xfff;
         // SAFETY: both codes have 12 bits and stand where the register wants them, RM0433 rev 9 section 26.7.11.
         self.dac.dhr12rd.write(|w| unsafe { w.bits(code(x) | code(y) << 16) });
-    }
-
-    /// Switches the drives off, from wherever: one store to a register that nobody reads and modifies.
-    #[inline(always)]
-    pub fn off() {
-        // SAFETY: as in `new`.
-        unsafe { (*pac::GPIOE::ptr()).bsrr.write(|w| w.bits(1 << (ENABLE + 16))) };
     }
 }

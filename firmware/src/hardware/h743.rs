@@ -6,7 +6,11 @@ use stm32h7xx_hal::gpio::{Output, PB0, PushPull, Speed};
 use stm32h7xx_hal::pac;
 use stm32h7xx_hal::prelude::*;
 
-use super::{Cycles, Drives, Encoders, SerialPort, StopInput, TickTimer};
+#[cfg(feature = "steps")]
+use super::StepRing;
+use super::{Cycles, SerialPort, StopInput, TickTimer, Watchdog};
+#[cfg(not(feature = "steps"))]
+use super::{Drives, Encoders};
 use crate::mailbox::MAILBOX;
 
 /// Bits per second of the line.
@@ -16,16 +20,32 @@ const BAUD: u32 = 921_600;
 pub struct Board {
     /// Interrupts 1024 times a second.
     pub timer: TickTimer,
-    /// Where the axes are.
-    pub encoders: Encoders,
-    /// Where they are told to go.
-    pub drives: Drives,
+    /// What moves the axes.
+    pub actuators: Actuators,
+    /// Waits for the tick to fail.
+    pub watchdog: Watchdog,
     /// The line to the host.
     pub port: SerialPort,
     /// The emergency stop.
     pub stop: StopInput,
     /// For people.
     pub lamp: Lamp,
+}
+
+/// What moves servo axes.
+#[cfg(not(feature = "steps"))]
+pub struct Actuators {
+    /// Where the axes are.
+    pub encoders: Encoders,
+    /// Where they are told to go.
+    pub drives: Drives,
+}
+
+/// What moves step axes.
+#[cfg(feature = "steps")]
+pub struct Actuators {
+    /// The steps of the next tick.
+    pub ring: StepRing,
 }
 
 /// The green LED.
@@ -69,16 +89,31 @@ pub fn start(
     core.SCB.enable_icache();
     Cycles::enable(&mut core.DCB, &mut core.DWT);
 
+    #[cfg(not(feature = "steps"))]
     let a = device.GPIOA.split(rec.GPIOA);
     let b = device.GPIOB.split(rec.GPIOB);
     let c = device.GPIOC.split(rec.GPIOC);
     let d = device.GPIOD.split(rec.GPIOD);
     let e = device.GPIOE.split(rec.GPIOE);
 
-    let (_, _) = (a.pa4.into_analog(), a.pa5.into_analog());
     let _ = e.pe2.into_push_pull_output();
-    let (_, _) = (c.pc6.into_alternate::<2>(), c.pc7.into_alternate::<2>());
-    let (_, _) = (d.pd12.into_alternate::<2>(), d.pd13.into_alternate::<2>());
+    #[cfg(not(feature = "steps"))]
+    let actuators = {
+        let (_, _) = (a.pa4.into_analog(), a.pa5.into_analog());
+        let (_, _) = (c.pc6.into_alternate::<2>(), c.pc7.into_alternate::<2>());
+        let (_, _) = (d.pd12.into_alternate::<2>(), d.pd13.into_alternate::<2>());
+        Actuators {
+            encoders: Encoders::new(device.TIM3, rec.TIM3, device.TIM4, rec.TIM4),
+            drives: Drives::new(device.DAC, rec.DAC12),
+        }
+    };
+    #[cfg(feature = "steps")]
+    let actuators = {
+        let (_, _) = (d.pd3.into_push_pull_output(), d.pd4.into_push_pull_output());
+        let (_, _) = (d.pd5.into_push_pull_output(), d.pd6.into_push_pull_output());
+        let (_, _) = (d.pd7.into_push_pull_output(), d.pd0.into_push_pull_output());
+        Actuators { ring: StepRing::new((device.TIM8, rec.TIM8), (device.DMA1, rec.DMA1), device.DMAMUX1) }
+    };
 
     let pins = (d.pd8.into_alternate::<7>().speed(Speed::High), d.pd9.into_alternate::<7>());
     let serial = match device.USART3.serial(pins, BAUD.bps(), rec.USART3, &ccdr.clocks) {
@@ -93,11 +128,11 @@ pub fn start(
     MAILBOX.set_stop(stop.is_pressed());
 
     Board {
-        encoders: Encoders::new(device.TIM3, rec.TIM3, device.TIM4, rec.TIM4),
-        drives: Drives::new(device.DAC, rec.DAC12),
+        actuators,
         port: SerialPort::new(rx, tx, received, to_send),
         stop,
         lamp: Lamp(b.pb0.into_push_pull_output()),
         timer: TickTimer::new(device.TIM2, rec.TIM2),
+        watchdog: Watchdog::start(device.IWDG),
     }
 }

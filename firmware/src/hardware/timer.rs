@@ -7,7 +7,7 @@ use stm32h7xx_hal::rcc::{ResetEnable, rec};
 pub const TIMER_HZ: u32 = 192_000_000;
 
 /// The timers' clocks in a tick.
-const PERIOD: u32 = TIMER_HZ / 1024;
+pub const PERIOD: u32 = TIMER_HZ / 1024;
 
 // 2^-10 s has to be a whole number of clocks, or the paper's times would drift.
 const _: () = assert!(PERIOD * 1024 == TIMER_HZ && 1.0 / 1024.0 == shared::TICK);

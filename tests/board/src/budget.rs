@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use crate::Error;
 use crate::image::Image;
-use crate::jobs::{Kind, ORDERS, job};
+use crate::jobs::{Kind, ORDERS, diagonal, job};
 use crate::probe::EXCEPTION_FRAME;
 use crate::reach::Reach;
 use crate::run::run_job;
@@ -75,6 +75,31 @@ pub fn measure(image: &Image, mut progress: impl FnMut(&str)) -> Result<Budget, 
         indirect: reach.indirect.iter().map(|(name, address)| format!("{name} at {address:#010x}")).collect(),
         reached: reach.functions.iter().map(|function| function.name.clone()).collect(),
     })
+}
+
+/// The rows of an image with three step axes, two of them on x: the interrupt along an offset PH piece, and at rest, in instructions;
+/// and what the image takes.
+pub fn measure_steps(
+    image: &Image,
+    mut progress: impl FnMut(&str),
+) -> Result<BTreeMap<String, BTreeMap<String, u32>>, Error> {
+    let (mut rows, mut stack) = (BTreeMap::new(), 0);
+    for (rate, name) in [(900_000.0, "steps 3 x 900000/s"), (100_000.0, "steps 3 x 100000/s")] {
+        progress(name);
+        let (header, pieces) = diagonal(rate);
+        let counted = run_job(image, header, pieces, 1.0, |_| {})?;
+        stack = stack.max(counted.seen.handler_stack);
+        let ticks = &counted.seen.ticks;
+        let whole = |median, most| BTreeMap::from([("median".to_owned(), median), ("most".to_owned(), most)]);
+        let most = ticks.iter().map(|tick| tick.instructions).max().unwrap_or(0);
+        rows.insert(name.to_owned(), whole(median(ticks.iter().map(|tick| tick.instructions)), most));
+        let rest = &counted.seen.resting;
+        rows.insert("steps at rest".to_owned(), BTreeMap::from([("median".to_owned(), median(rest.iter().copied()))]));
+    }
+    let sizes = image.sizes();
+    let bytes = [("stack bytes", stack + EXCEPTION_FRAME), ("flash bytes", sizes.flash), ("ram bytes", sizes.ram)];
+    rows.insert("steps image".to_owned(), bytes.map(|(name, bytes)| (name.to_owned(), bytes)).into());
+    Ok(rows)
 }
 
 /// The middle one of some counts; the upper of two.

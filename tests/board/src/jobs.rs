@@ -67,6 +67,12 @@ pub fn job(kind: Kind, order: Order) -> (Header<f32>, Vec<Piece<f32>>) {
         further: None,
         last: None,
     };
+    twice(header, first)
+}
+
+/// A piece, and again where it ended.
+fn twice(header: Header<f32>, first: Piece<f32>) -> (Header<f32>, Vec<Piece<f32>>) {
+    let origin = first.origin;
     let Some(ends) = ends(&header, &first) else { return (header, Vec::new()) };
     // The second piece is the first one moved to where that ended.
     let way = |axis: usize| ends[1][axis].0 - ends[0][axis].0;
@@ -74,6 +80,41 @@ pub fn job(kind: Kind, order: Order) -> (Header<f32>, Vec<Piece<f32>>) {
     let [x, y] = moved(ends[1]);
     let second = Piece { origin: moved(origin), last: Some([x, y, Fixed(0)]), ..first };
     (header, vec![first, second])
+}
+
+/// The speed of each of x and y at which a step axis of the firmware makes one step a second, in mm/s; see `firmware/src/axes/steps.rs`.
+const MM_PER_STEP: f64 = 1.0 / 8_000.0;
+
+/// Two offset PH pieces that go along the diagonal, within three degrees of it, at full speed from the first tick: x and y make
+/// `steps_per_s` each, for about a quarter of a second.
+pub fn diagonal(steps_per_s: f64) -> (Header<f32>, Vec<Piece<f32>>) {
+    let header = Header {
+        weight: 0.5,
+        order: Order::First,
+        closed: false,
+        tolerance: 1e-3,
+        rest: false,
+        pace: PaceLimits::USUAL,
+    };
+    let feed = steps_per_s * MM_PER_STEP * std::f64::consts::SQRT_2;
+    // The square of the preimage is the hodograph: its length is that of an eighth of a second, its direction is twice the angle.
+    let (sin, cos) = (std::f64::consts::PI / 8.0).sin_cos();
+    let turned = |along: f64, across: f64| {
+        Complex::new((along * cos - across * sin) as f32, (along * sin + across * cos) as f32)
+    };
+    let size = (feed / 8.0).sqrt();
+    let preimage = [turned(size, 0.0), turned(0.0, size * 0.03), turned(0.0, 0.0)];
+    let first = Piece {
+        origin: round_point(Complex::new(30.0, 20.0)),
+        shape: Shape::Ph { preimage, offset: -0.2 },
+        interval: [0.0, 1.0],
+        feed: feed as f32,
+        start: None,
+        end: None,
+        further: None,
+        last: None,
+    };
+    twice(header, first)
 }
 
 /// Where a piece begins and where it ends: what a planner would know.

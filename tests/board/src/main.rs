@@ -7,9 +7,10 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use board::Error;
-use board::budget::{measure, median};
+use board::budget::{measure, measure_steps, median};
 use board::image::Image;
 use board::probe::{EXCEPTION_FRAME, Tick};
+use board::reach::Reach;
 use board::run::run_job;
 use clap::{Args, Parser, Subcommand};
 use serde::Serialize;
@@ -50,6 +51,9 @@ struct Budget {
     /// The image
     #[arg(long, value_name = "ELF")]
     elf: PathBuf,
+    /// The image with three step axes, two of them on x
+    #[arg(long, value_name = "ELF")]
+    tandem: Option<PathBuf>,
 }
 
 /// The result of `run`.
@@ -131,7 +135,15 @@ impl Run {
 impl Budget {
     fn run(self) -> Result<(), Error> {
         let image = Image::read(&self.elf)?;
-        let budget = measure(&image, |name| eprintln!("  measuring {name}"))?;
+        let progress = |name: &str| eprintln!("  measuring {name}");
+        let mut budget = measure(&image, progress)?;
+        if let Some(tandem) = &self.tandem {
+            let tandem = Image::read(tandem)?;
+            budget.instructions.extend(measure_steps(&tandem, progress)?);
+            let reach = Reach::of_tick(&tandem)?;
+            budget.forbidden.extend(reach.forbidden().into_iter().map(str::to_owned));
+            budget.indirect.extend(reach.indirect.iter().map(|(name, address)| format!("{name} at {address:#010x}")));
+        }
         print_json(&budget)
     }
 }

@@ -3,15 +3,18 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
-use rigless::emulator::{Driver, Hit, Host, Settled, Stop, Watch};
+use rigless::device::Level;
+use rigless::emulator::{AccessKind, Driver, Hit, Host, Settled, Stop, Watch};
 use rigless::machine::stm32h743_bench::Stm32h743Bench;
 use rigless::session::Session;
 use rigless::soc::Width;
+use rigless::soc::stm32h743::peripherals::gpio::Pin;
 use rigless::time::VirtualNanos;
 
 use crate::Error;
 use crate::image::{Image, Instruction, MAILBOX};
 use crate::line::{Shared, Talker, lock};
+use crate::pins::Pins;
 
 /// How often the run is looked at from outside, in virtual nanoseconds.
 const LOOK: u64 = 1_000_000;
@@ -24,6 +27,16 @@ const PAINT_EVERY: u32 = 128;
 
 /// How many instants of the handler's entry are kept.
 const KEPT_ENTRIES: usize = 4_096;
+
+/// The first control register of TIM8, whose update plays a word; RM0433 rev 9 section 2.3.
+const SLOT_TIMER: u64 = 0x4001_0400;
+
+/// The set/reset register of port E, and the word that switches the drives off there.
+const ENABLE_PORT: u64 = 0x5802_1018;
+const DISABLE: u64 = 1 << 18;
+
+/// The stop input: number of its port, and bit.
+const STOP: (usize, u8) = (2, 13);
 
 const PAINT: u64 = 0xa5a5_5a5a;
 
@@ -59,6 +72,14 @@ pub struct Seen {
     pub executed: BTreeMap<u32, u32>,
     /// How many ticks `executed` counts.
     pub counted_ticks: u32,
+    /// Instructions of the interrupts before the first job's first tick.
+    pub resting: Vec<u32>,
+    /// What the step drives saw, where they were looked at.
+    pub pins: Pins,
+    /// When the stop input was pressed, in ns.
+    pub pressed: Option<u64>,
+    /// When the drives' enable output was last switched off by the program, in ns.
+    pub disabled: Option<u64>,
     /// Any setpoint, at any time, that was not at rest at the origin.
     pub moved: bool,
 }
@@ -88,6 +109,12 @@ pub struct Probe {
     /// What ran since, of what is counted.
     ran: Vec<u32>,
     last_ticks: u32,
+    /// Whether the pins are looked at, slot by slot.
+    looks: bool,
+    /// When the stop input is pressed, in ns after the job's first tick.
+    press_after: Option<u64>,
+    /// When it is pressed, in ns.
+    press_at: Option<u64>,
     /// What was seen.
     pub seen: Seen,
 }
@@ -110,6 +137,9 @@ impl Probe {
             stack_pointer: None,
             ran: Vec::new(),
             last_ticks: 0,
+            looks: false,
+            press_after: None,
+            press_at: None,
             seen: Seen::default(),
         })
     }
@@ -118,6 +148,16 @@ impl Probe {
     pub fn count_instructions(&mut self, instructions: Vec<u32>, range: Range<u32>) {
         self.counted = instructions;
         self.count_range = range;
+    }
+
+    /// Looks at the pins of step drives in every slot. The run is slow then.
+    pub fn look_at_pins(&mut self) {
+        self.looks = true;
+    }
+
+    /// Presses the stop input so many nanoseconds after the job's first tick, and holds it.
+    pub fn press_stop_after(&mut self, nanoseconds: u64) {
+        self.press_after = Some(nanoseconds);
     }
 
     /// Asks the session to stop where this probe wants to look, and to come back in time.
@@ -166,6 +206,9 @@ impl Probe {
             }
             self.seen.ticks.push(tick);
         }
+        if self.seen.ticks.is_empty() {
+            self.seen.resting.push(instructions);
+        }
         self.last_ticks = mail.ticks;
     }
 
@@ -202,15 +245,45 @@ impl Probe {
 }
 
 impl Driver<Stm32h743Bench> for Probe {
-    fn on_settled(&mut self, _: &mut Session<Stm32h743Bench>, host: &mut dyn Host, settled: Settled) {
-        if let Settled::Hit(hit) = settled {
-            self.hit(host, hit.address as u32, hit);
+    fn on_settled(&mut self, session: &mut Session<Stm32h743Bench>, host: &mut dyn Host, settled: Settled) {
+        match settled {
+            Settled::Hit(hit) => {
+                self.hit(host, hit.address as u32, hit);
+                if let Some(after) = self.press_after
+                    && !self.seen.ticks.is_empty()
+                {
+                    self.press_after = None;
+                    self.press_at = Some(hit.at.0 + after);
+                }
+            }
+            Settled::Access { access, .. } if access.kind == AccessKind::Write => {
+                if access.address == SLOT_TIMER && access.value & 1 != 0 && self.looks {
+                    let first = self.seen.pins.start(access.virtual_time);
+                    session.run_until(first);
+                }
+                if access.address == ENABLE_PORT && access.value == DISABLE {
+                    self.seen.disabled = Some(access.virtual_time.0);
+                }
+            }
+            _ => {}
         }
     }
 
-    fn on_stop(&mut self, _: &mut Session<Stm32h743Bench>, stop: Stop, _: &mut dyn Host) -> Option<VirtualNanos> {
+    fn on_stop(&mut self, session: &mut Session<Stm32h743Bench>, stop: Stop, _: &mut dyn Host) -> Option<VirtualNanos> {
+        if self.press_at.is_some_and(|at| stop.at.0 >= at) {
+            self.press_at = None;
+            self.seen.pressed = Some(stop.at.0);
+            session.board_mut().mcu.drive_port(stop.at, STOP.0, |gpio, registers, context| {
+                if let Some(pin) = Pin::new(STOP.1) {
+                    gpio.drive(pin, Some(Level::High), registers, context);
+                }
+            });
+        }
+        let look = if self.looks { self.seen.pins.look(session.board_mut(), stop.at) } else { None };
         let is_over = stop.at >= self.deadline || lock(&*self.talker).is_done();
-        (!is_over).then_some(VirtualNanos(stop.at.0 + LOOK))
+        let next = [look, self.press_at.map(VirtualNanos)].into_iter().flatten().min();
+        let next = next.map_or(stop.at.0 + LOOK, |next| next.0.min(stop.at.0 + LOOK));
+        (!is_over).then_some(VirtualNanos(next))
     }
 }
 

@@ -9,10 +9,21 @@ pub fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
 }
 
-/// The image that is flashed, as `cargo xtask build` left it.
+/// The image with servo axes, as `cargo xtask build` left it.
+#[allow(dead_code, reason = "each file of tests has a copy of this module, and not all need it")]
 pub fn image() -> Image {
+    built("firmware-servos")
+}
+
+/// The image with step axes.
+#[allow(dead_code, reason = "each file of tests has a copy of this module, and not all need it")]
+pub fn steps_image() -> Image {
+    built("firmware-steps")
+}
+
+fn built(name: &str) -> Image {
     let target = std::env::var_os("HODOGRAPH_TARGET").map_or_else(|| root().join("target"), PathBuf::from);
-    let elf = target.join("thumbv7em-none-eabihf/firmware/firmware");
+    let elf = target.join("thumbv7em-none-eabihf/firmware").join(name);
     assert!(
         elf.is_file(),
         "there is no image yet; `cargo xtask build` makes it, and `cargo xtask test` runs these tests"

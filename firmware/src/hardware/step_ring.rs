@@ -1,0 +1,170 @@
+//! The ring of set/reset words, and the hardware that plays it.
+//!
+//! TIM8's update, once a slot, asks DMA1 stream 0 (DMAMUX1 request 51) for one word from the ring to port D's set/reset register. The
+//! ring stands in SRAM1: DMA1 does not reach the DTCM, where everything else is, RM0433 rev 9 table 3. The core's data cache stays off,
+//! so that what the tick writes is in memory when the barrier in [`StepRing::filled`] is past; a firmware that switches it on
+//! has to make this region non-cacheable in the MPU.
+//!
+//! TIM2 and TIM8 run from the same clock, and a tick is [`SLOTS`] slots exactly: once they have been started together, the phase between
+//! the tick and the ring never changes. A half begins half a slot before the tick, so that neither the skew of two stores nor
+//! an interrupt that comes a little late leaves a doubt which half is played; every tick looks, and misses nothing silently.
+//!
+//! Where the tick does not come any more, the hardware would play the ring again and again: the watchdog ends that.
+
+use core::cell::UnsafeCell;
+use core::mem::MaybeUninit;
+
+use shared::steps::Half;
+use stm32h7xx_hal::pac;
+use stm32h7xx_hal::rcc::{ResetEnable, rec};
+
+use super::timer::PERIOD;
+use crate::axes::Fault;
+
+/// Slots in a tick: 0.52 us each.
+pub const SLOTS: usize = 1_875;
+
+/// The timers' clocks in a slot.
+const SLOT: u32 = PERIOD / SLOTS as u32;
+
+// Or ring and tick would drift.
+const _: () = assert!(SLOT * SLOTS as u32 == PERIOD);
+
+/// Words of both halves.
+const WORDS: usize = 2 * SLOTS;
+
+/// How far into a half the tick may find the hardware: with the other half of the time it fills what comes next.
+const LATEST: usize = SLOTS / 2;
+
+/// DMAMUX1's number of TIM8's update request, RM0433 rev 9 table 121.
+const TIM8_UPDATE: u32 = 51;
+
+#[repr(transparent)]
+struct Memory(UnsafeCell<MaybeUninit<[[u32; SLOTS]; 2]>>);
+
+// SAFETY: the only `StepRing` has the only access, and there is one because it owns TIM8.
+unsafe impl Sync for Memory {}
+
+#[unsafe(link_section = ".sram1.ring")]
+static MEMORY: Memory = Memory(UnsafeCell::new(MaybeUninit::uninit()));
+
+/// See the module.
+pub struct StepRing {
+    timer: pac::TIM8,
+    dma: pac::DMA1,
+    mux: pac::DMAMUX1,
+    armed: bool,
+    /// The half that was filled last.
+    filled: Half,
+}
+
+impl StepRing {
+    /// A ring that is not played.
+    pub fn new(
+        (timer, timer_rec): (pac::TIM8, rec::Tim8),
+        (dma, dma_rec): (pac::DMA1, rec::Dma1),
+        mux: pac::DMAMUX1,
+    ) -> Self {
+        let _ = timer_rec.enable().reset();
+        let _ = dma_rec.enable().reset();
+        // SAFETY: the clock of SRAM1, which no other code switches; the HAL has given out the rest of the register by now.
+        unsafe { (*pac::RCC::ptr()).ahb2enr.modify(|_, w| w.sram1en().set_bit()) };
+        Self { timer, dma, mux, armed: false, filled: Half::Second }
+    }
+
+    /// Gives the pins their levels at rest. They are outputs by then.
+    pub fn connect(&mut self, idle: u32) {
+        // SAFETY: port D's set/reset register changes the pins of the word alone.
+        unsafe { (*pac::GPIOD::ptr()).bsrr.write(|w| w.bits(idle)) };
+    }
+
+    /// Has the ring played from its start, full of nothing, and starts the tick's period anew with it.
+    pub fn arm(&mut self) {
+        self.disarm();
+        let stream = &self.dma.st[0];
+        stream.cr.write(|w| w.en().clear_bit());
+        // A stream that serves a request takes a few cycles to stop; one that never does is not armed.
+        if (0..1_000).all(|_| stream.cr.read().en().bit_is_set()) {
+            return;
+        }
+        let memory = MEMORY.0.get();
+        // SAFETY: nothing plays the ring, and `&mut self` is the only way to it; zeros are words.
+        unsafe { memory.write(MaybeUninit::zeroed()) };
+        cortex_m::asm::dsb();
+        // SAFETY: the values are those of RM0433 rev 9 sections 15.5 and 17.6: words from memory that is the ring's own for ever, to a
+        // register whose every value is a valid one; all flags of stream 0 are cleared.
+        unsafe {
+            self.dma.lifcr.write(|w| w.bits(0x3d));
+            self.mux.ccr[0].write(|w| w.bits(TIM8_UPDATE));
+            stream.ndtr.write(|w| w.bits(WORDS as u32));
+            stream.par.write(|w| w.bits((*pac::GPIOD::ptr()).bsrr.as_ptr() as u32));
+            stream.m0ar.write(|w| w.bits(memory as u32));
+            stream.fcr.write(|w| w.bits(0));
+            // Very high priority, words on both sides, memory increments, circular, memory to peripheral.
+            stream.cr.write(|w| w.bits(3 << 16 | 2 << 13 | 2 << 11 | 1 << 10 | 1 << 8 | 1 << 6));
+        }
+        stream.cr.modify(|_, w| w.en().set_bit());
+        self.timer.arr.write(|w| w.arr().bits((SLOT - 1) as u16));
+        self.timer.dier.write(|w| w.ude().set_bit());
+        self.filled = Half::Second;
+        cortex_m::interrupt::free(|_| {
+            // SAFETY: the tick's timer is stopped and started within a tick or before the first one, with all interrupts off: whoever
+            // owns it sees a period that began here.
+            let tick = unsafe { &*pac::TIM2::ptr() };
+            tick.cr1.write(|w| w.cen().clear_bit());
+            tick.cnt.reset();
+            self.timer.cnt.write(|w| w.cnt().bits((SLOT / 2) as u16));
+            self.timer.cr1.write(|w| w.cen().set_bit());
+            tick.cr1.write(|w| w.cen().set_bit());
+        });
+        self.armed = true;
+    }
+
+    /// No word is played from here on.
+    #[inline(always)]
+    pub fn disarm(&mut self) {
+        self.armed = false;
+        Self::off();
+    }
+
+    /// Whether the ring is played, unless [`StepRing::off`] was called.
+    #[inline(always)]
+    pub fn is_armed(&self) -> bool {
+        self.armed
+    }
+
+    /// Stops the slots, from wherever: one store, after which no request comes.
+    #[inline(always)]
+    pub fn off() {
+        // SAFETY: zero stops the timer, whatever it did.
+        unsafe { (*pac::TIM8::ptr()).cr1.write(|w| w.bits(0)) };
+    }
+
+    /// The half that is to be filled, which is the one that is not played. An error where that is not the one after the last, or
+    /// where too much of the other one is past.
+    #[inline(always)]
+    pub fn next_half(&self) -> Result<Half, Fault> {
+        let played = WORDS.saturating_sub(self.dma.st[0].ndtr.read().bits() as usize);
+        let (half, into) = if played < SLOTS { (Half::Second, played) } else { (Half::First, played - SLOTS) };
+        if self.armed && (half == self.filled || into > LATEST) { Err(Fault::MissedHalf) } else { Ok(half) }
+    }
+
+    /// The words of a half that [`StepRing::next_half`] named in this tick.
+    #[inline(always)]
+    pub fn words(&mut self, half: Half) -> &mut [u32; SLOTS] {
+        // SAFETY: `arm` has initialized the memory; `&mut self` is the only way to it; the DMA only reads, and in this tick only
+        // the other half.
+        let [first, second] = unsafe { (*MEMORY.0.get()).assume_init_mut() };
+        match half {
+            Half::First => first,
+            Half::Second => second,
+        }
+    }
+
+    /// Takes note that `half` is filled, and waits until its words are in memory.
+    #[inline(always)]
+    pub fn filled(&mut self, half: Half) {
+        self.filled = half;
+        cortex_m::asm::dsb();
+    }
+}
