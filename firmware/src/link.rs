@@ -2,18 +2,22 @@
 
 use heapless::spsc::{Consumer, Producer};
 use shared::active::ActivePiece;
-use shared::executor::State;
+use shared::control::{Directive, PathEnd, Start};
 use shared::fixed::Fixed;
-use shared::link::{Action, Answer, End, Ending, Endpoint, Frame, Identity, Machine, Refusal, Telemetry};
+use shared::link::frame::checksum;
+use shared::link::{Action, Answer, Chunk, End, Endpoint, Frame, Identity, Machine as Peer, Refusal, Telemetry};
 use shared::loader::Motion;
+use shared::machine::image::{IMAGE_SIZE, Image};
+use shared::machine::{HostLost, Machine};
 use shared::motion::MotionCommand;
+use shared::safety::{Coordinates, State};
 use shared::supply::Sink;
 
-use crate::axes::AXES;
-use crate::control::Directive;
+use crate::control::Answer as TickAnswer;
 use crate::hardware::Lamp;
 use crate::mailbox::MAILBOX;
-use crate::telemetry::{Reporter, motion_state};
+use crate::telemetry::Reporter;
+use crate::{kept, restart};
 
 /// Received bytes that may wait for the link: more than the sender's window.
 pub const RX_BYTES: usize = 2048;
@@ -21,8 +25,8 @@ pub const RX_BYTES: usize = 2048;
 /// Bytes that may wait for the line.
 pub const TX_BYTES: usize = 1024;
 
-/// Whether a host that vanishes leaves a machine that brakes; otherwise it finishes what is queued and rests.
-const BRAKE_IF_ALONE: bool = true;
+/// How long the answer to a new machine has to leave before the restart, in ticks.
+const PARTING_TICKS: u32 = 50;
 
 /// See the module.
 pub struct Link {
@@ -31,29 +35,46 @@ pub struct Link {
     queues: Queues,
 }
 
+/// What leads to the line and to the tick, and back.
+pub struct Lines {
+    /// Bytes for the line.
+    pub to_send: Producer<'static, u8>,
+    /// Pieces for the tick.
+    pub pieces: Sink<'static, f32>,
+    /// What is asked of it.
+    pub directives: Producer<'static, Directive>,
+    /// What it says of that.
+    pub answers: Consumer<'static, TickAnswer>,
+}
+
 /// What the endpoint speaks through.
 struct Queues {
-    to_send: Producer<'static, u8>,
-    pieces: Sink<'static, f32>,
+    lines: Lines,
     capacity: u16,
-    directives: Producer<'static, Directive>,
+    machine: Machine,
+    /// The image of the machine; empty where there is none.
+    image: &'static Image,
+    /// A machine that is being sent.
+    draft: [u8; IMAGE_SIZE],
+    /// A machine that was sent whole: its length, and when to restart with it.
+    leaving: Option<(usize, u32)>,
     lamp: Lamp,
     reporter: Reporter,
-    percent: u8,
 }
 
 impl Link {
-    /// A link between these queues.
+    /// A link between these queues, on a controller of this machine and its image.
     pub fn new(
         received: Consumer<'static, u8>,
-        to_send: Producer<'static, u8>,
-        pieces: Sink<'static, f32>,
-        directives: Producer<'static, Directive>,
+        lines: Lines,
+        machine: Machine,
+        image: &'static Image,
         lamp: Lamp,
     ) -> Self {
-        let capacity = pieces.room() as u16;
+        let capacity = lines.pieces.room() as u16;
+        let draft = [0; IMAGE_SIZE];
         let reporter = Reporter::default();
-        let queues = Queues { to_send, pieces, capacity, directives, lamp, reporter, percent: 100 };
+        let queues = Queues { lines, capacity, machine, image, draft, leaving: None, lamp, reporter };
         Self { received, endpoint: Endpoint::new(), queues }
     }
 
@@ -63,106 +84,137 @@ impl Link {
             self.endpoint.receive(&mut self.queues, MAILBOX.uptime(), byte);
         }
         self.endpoint.poll(&mut self.queues, MAILBOX.uptime());
+        self.queues.leave();
     }
 }
 
 impl Queues {
-    /// Hands a directive to the tick, and waits for the tick that takes it: a period at most, since nothing here can hold it up.
-    /// So whatever is loaded next belongs to what comes after the directive.
-    fn direct(&mut self, directive: Directive) {
-        let mut waiting = self.directives.enqueue(directive).is_ok();
-        while waiting {
+    /// Hands a directive to the tick, and waits for its answer: some periods at most, since nothing here can hold the tick up.
+    fn direct(&mut self, directive: Directive) -> Result<(), Refusal> {
+        if self.lines.directives.enqueue(directive).is_err() {
+            return Err(Refusal::Busy);
+        }
+        loop {
+            if let Some(answer) = self.lines.answers.dequeue() {
+                return answer.map_err(Refusal::from);
+            }
             cortex_m::asm::wfi();
-            waiting = !self.directives.is_empty();
+        }
+    }
+
+    fn put_aside(&mut self, offset: u16, chunk: &Chunk) -> Result<Answer, Refusal> {
+        let bytes = chunk.bytes().ok_or(Refusal::Range)?;
+        let from = usize::from(offset);
+        let place = self.draft.get_mut(from..from + bytes.len()).ok_or(Refusal::Range)?;
+        place.copy_from_slice(bytes);
+        Ok(Answer::Done)
+    }
+
+    fn commit(&mut self, length: u16, crc: u32) -> Result<Answer, Refusal> {
+        let length = usize::from(length);
+        let draft = self.draft.get(..length).ok_or(Refusal::Image)?;
+        if checksum(draft) != crc || kept::machine_of(draft).is_none() {
+            return Err(Refusal::Image);
+        }
+        if !matches!(MAILBOX.read().machine, State::Idle | State::Fault | State::EStop) {
+            return Err(Refusal::Busy);
+        }
+        self.leaving = Some((length, MAILBOX.uptime().wrapping_add(PARTING_TICKS)));
+        Ok(Answer::Done)
+    }
+
+    fn image_part(&self, offset: u16) -> Answer {
+        let rest = self.image.get(usize::from(offset)..).unwrap_or_default();
+        let part = rest.get(..shared::link::action::CHUNK_SIZE).unwrap_or(rest);
+        // An image is shorter than 64 KiB.
+        let length = self.image.len() as u16;
+        Answer::Image { length, crc: checksum(self.image), offset, chunk: Chunk::new(part).unwrap_or_default() }
+    }
+
+    /// Restarts with a machine that was sent, once its answer has left. Not while anything moves: a job may have begun meanwhile.
+    fn leave(&mut self) {
+        let Some((length, at)) = self.leaving else { return };
+        let is_due = MAILBOX.uptime().wrapping_sub(at) as i32 >= 0;
+        if is_due && matches!(MAILBOX.read().machine, State::Idle | State::Fault | State::EStop) {
+            restart::with_image(self.draft.get(..length).unwrap_or_default());
         }
     }
 }
 
-impl Machine for Queues {
+impl Peer for Queues {
     fn identity(&self) -> Identity {
-        Identity { firmware: [0, 1, 0], axes: AXES as u8, capacity: self.capacity }
+        Identity { firmware: [0, 1, 0], axes: self.machine.axes.len() as u8, capacity: self.capacity }
     }
 
     fn room(&self) -> u16 {
-        self.pieces.room() as u16
+        self.lines.pieces.room() as u16
     }
 
     fn ready(&self) -> Result<(), Refusal> {
-        if MAILBOX.is_stopped() { Err(Refusal::Stopped) } else { Ok(()) }
-    }
-
-    fn clear(&mut self) {
-        self.direct(Directive::Stop);
-        self.pieces.restart();
-    }
-
-    fn push(&mut self, piece: ActivePiece<f32>) -> bool {
-        self.pieces.push(piece).is_ok()
-    }
-
-    fn start(&mut self, motion: &Motion<f32>, at: [Fixed; 2]) -> Result<(), Refusal> {
-        defmt::info!("run");
-        self.direct(Directive::Start(*motion, at));
         Ok(())
     }
 
-    fn stop(&mut self) {
-        self.direct(Directive::Stop);
+    fn clear(&mut self) {
+        // A path that runs is the endpoint's own, which does not ask for this then.
+        let _ = self.direct(Directive::Clear);
+        self.lines.pieces.restart();
     }
 
-    /// The tick refuses what its motion does not allow; telemetry shows that nothing came of it.
+    fn push(&mut self, piece: ActivePiece<f32>) -> bool {
+        self.lines.pieces.push(piece).is_ok()
+    }
+
+    fn start(&mut self, motion: &Motion<f32>, at: [Fixed; 2]) -> Result<(), Refusal> {
+        let start = Start { motion: *motion, coordinates: Coordinates::Relative, at, further: None };
+        self.direct(Directive::Start(start))
+    }
+
+    fn stop(&mut self) {
+        // Neither can be refused in the state that it is asked for in; a path that has just ended needs no cancelling.
+        let _ = match MAILBOX.read().path {
+            PathEnd::Running => self.direct(Directive::Motion(MotionCommand::Cancel)),
+            _ => self.direct(Directive::Clear),
+        };
+    }
+
     fn act(&mut self, action: Action) -> Result<Answer, Refusal> {
+        if let Some(directive) = action.directive() {
+            return self.direct(directive).map(|()| Answer::Done);
+        }
         match action {
-            Action::Motion(command) => {
-                if let MotionCommand::Override { percent } = command {
-                    self.percent = percent;
-                }
-                self.direct(Directive::Command(command));
-                Ok(Answer::Done)
-            }
-            Action::Acknowledge => {
-                MAILBOX.release();
-                self.ready().map(|()| Answer::Done)
-            }
-            Action::Home | Action::WriteImage { .. } | Action::CommitImage { .. } | Action::ReadImage { .. } => {
-                Err(Refusal::Unsupported)
-            }
+            Action::WriteImage { offset, chunk } => self.put_aside(offset, &chunk),
+            Action::CommitImage { length, crc } => self.commit(length, crc),
+            Action::ReadImage { offset } => Ok(self.image_part(offset)),
+            Action::Motion(_) | Action::Home | Action::Acknowledge => Err(Refusal::Unsupported),
         }
     }
 
     fn end(&self) -> Option<End> {
-        let snapshot = MAILBOX.read();
-        match snapshot.state {
-            _ if MAILBOX.is_stopped() => Some(End::Early(Ending::Stopped)),
-            state if state == State::Finished as u32 => {
-                Some(End::Finished { ticks: snapshot.ticks, residual: snapshot.residual, hash: snapshot.hash })
-            }
-            state if state == State::Cancelled as u32 => Some(End::Early(Ending::Cancelled)),
-            _ => None,
-        }
+        MAILBOX.read().end()
     }
 
     fn telemetry(&mut self, loading: bool) -> Telemetry {
-        let snapshot = MAILBOX.read();
-        self.lamp.show(motion_state(&snapshot, loading));
-        Telemetry { percent: self.percent, ..self.reporter.report(&snapshot, loading) }
+        let status = MAILBOX.read();
+        self.lamp.show(status.motion.is_moving() || status.machine == State::Homing);
+        self.reporter.report(&status, loading)
     }
 
     fn host_vanished(&mut self) {
         defmt::warn!("the host has vanished");
-        if BRAKE_IF_ALONE {
-            self.direct(Directive::Command(MotionCommand::Hold));
+        if self.machine.host_lost == HostLost::Brake {
+            let _ = self.direct(Directive::Motion(MotionCommand::Cancel));
         }
     }
 
     /// Half a frame would only spoil the next one.
     fn send(&mut self, frame: &Frame) {
-        if self.to_send.capacity() - self.to_send.len() < frame.len() {
+        let to_send = &mut self.lines.to_send;
+        if to_send.capacity() - to_send.len() < frame.len() {
             return;
         }
         for &byte in frame {
             // There is room, and nobody else writes here.
-            let _ = self.to_send.enqueue(byte);
+            let _ = to_send.enqueue(byte);
         }
     }
 }

@@ -5,9 +5,12 @@
 
 use core::sync::atomic::{AtomicBool, AtomicI32, AtomicU32, Ordering::Relaxed};
 
+use shared::control::{PathEnd, Status};
 use shared::fixed::{Fixed, Position};
+use shared::safety::Fault;
+use shared::{motion, safety};
 
-use crate::axes::{AXES, Fault};
+use crate::hardware::AXES;
 
 /// The mailbox.
 #[unsafe(no_mangle)]
@@ -19,93 +22,97 @@ pub use self::HODOGRAPH_MAILBOX as MAILBOX;
 /// See the module.
 #[repr(C)]
 pub struct Mailbox {
-    /// Ticks since the controller started; the first and the last word that a tick writes differ only while it writes.
+    /// Ticks since the controller started.
     uptime: AtomicU32,
-    /// What the executor is about: the number of `shared::executor::State`.
-    state: AtomicU32,
-    /// Ticks of this job.
+    /// What the motion is about: the number of `shared::motion::State`.
+    motion: AtomicU32,
+    /// Ticks of this path.
     ticks: AtomicU32,
-    /// Pieces of this job that were entered.
+    /// Pieces of this path that were entered.
     pieces: AtomicU32,
-    /// The setpoint, in units of `shared::fixed`.
+    /// The setpoint in the path's coordinates, in units of `shared::fixed`.
     setpoint: [AtomicI32; 3],
-    /// The hash of all setpoints of this job, lower word first.
+    /// The hash of all setpoints of this path, lower word first.
     hash: [AtomicU32; 2],
     /// Time left in the last tick, in s, as the bits of an f32.
     residual: AtomicU32,
-    /// What each axis was told: a drive's command in mm/s as the bits of an f32, or a position in steps.
-    outputs: [AtomicU32; AXES],
+    /// What each axis was told: a drive's command as the bits of an f32, or a position in steps.
+    told: [AtomicU32; AXES],
     /// Cycles of the core that this tick took up to here.
     cycles: AtomicU32,
     /// The most of these since the controller started.
     worst_cycles: AtomicU32,
-    /// Whether the stop input was pressed since the last `release`.
-    stopped: AtomicBool,
-    /// Whether the stop input is pressed now.
-    pressed: AtomicBool,
-    /// What stopped the axes since the last `release`: the number of a `crate::axes::Fault`, or 0.
+    /// What the machine is about: the number of `shared::safety::State`.
+    machine: AtomicU32,
+    /// What became of the path, `PathEnd::word`.
+    path: AtomicU32,
+    /// What is wrong, `Fault::word`, or 0.
     fault: AtomicU32,
-}
-
-/// What one tick leaves.
-#[derive(Clone, Copy, Debug)]
-pub struct Snapshot {
-    /// The number of `shared::executor::State`.
-    pub state: u32,
-    /// Ticks of this job.
-    pub ticks: u32,
-    /// Pieces of this job that were entered.
-    pub pieces: u32,
-    /// The setpoint.
-    pub setpoint: Position,
-    /// The hash of all setpoints of this job.
-    pub hash: u64,
-    /// Time left in the last tick, in s.
-    pub residual: f32,
-    /// What each axis was told, as the mailbox keeps it.
-    pub outputs: [u32; AXES],
-    /// Cycles of the core that the tick took.
-    pub cycles: u32,
+    /// The axes whose position is known, and the override in per cent above: bits 0..8 and 8..16.
+    known: AtomicU32,
+    /// Where the axes shall be, in machine coordinates.
+    position: [AtomicI32; 3],
+    /// Where they were when the tick began.
+    actual: [AtomicI32; 3],
+    /// Whether the button was pressed since the last tick.
+    button: AtomicBool,
+    /// Whether it is pressed now.
+    pressed: AtomicBool,
 }
 
 impl Mailbox {
     const fn new() -> Self {
+        const ZERO: AtomicI32 = AtomicI32::new(0);
         Self {
             uptime: AtomicU32::new(0),
-            state: AtomicU32::new(0),
+            motion: AtomicU32::new(0),
             ticks: AtomicU32::new(0),
             pieces: AtomicU32::new(0),
-            setpoint: [const { AtomicI32::new(0) }; 3],
+            setpoint: [const { ZERO }; 3],
             hash: [const { AtomicU32::new(0) }; 2],
             residual: AtomicU32::new(0),
-            outputs: [const { AtomicU32::new(0) }; AXES],
+            told: [const { AtomicU32::new(0) }; AXES],
             cycles: AtomicU32::new(0),
             worst_cycles: AtomicU32::new(0),
-            stopped: AtomicBool::new(false),
-            pressed: AtomicBool::new(false),
+            machine: AtomicU32::new(0),
+            path: AtomicU32::new(0),
             fault: AtomicU32::new(0),
+            known: AtomicU32::new(0),
+            position: [const { ZERO }; 3],
+            actual: [const { ZERO }; 3],
+            button: AtomicBool::new(false),
+            pressed: AtomicBool::new(false),
         }
     }
 
-    /// Leaves a snapshot. The tick alone calls this.
+    /// Leaves how the machine stands. The tick alone calls this, and then [`Mailbox::close`].
     #[inline(always)]
-    pub fn publish(&self, snapshot: &Snapshot) {
-        self.state.store(snapshot.state, Relaxed);
-        self.ticks.store(snapshot.ticks, Relaxed);
-        self.pieces.store(snapshot.pieces, Relaxed);
-        for (word, coordinate) in self.setpoint.iter().zip(snapshot.setpoint) {
-            word.store(coordinate.0, Relaxed);
-        }
+    pub fn publish(&self, status: &Status<AXES>) {
+        self.motion.store(status.motion as u32, Relaxed);
+        self.ticks.store(status.ticks, Relaxed);
+        self.pieces.store(status.pieces, Relaxed);
+        write(&self.setpoint, status.setpoint);
         let [low, high] = &self.hash;
-        low.store(snapshot.hash as u32, Relaxed);
-        high.store((snapshot.hash >> 32) as u32, Relaxed);
-        self.residual.store(snapshot.residual.to_bits(), Relaxed);
-        for (word, output) in self.outputs.iter().zip(snapshot.outputs) {
-            word.store(output, Relaxed);
+        low.store(status.hash as u32, Relaxed);
+        high.store((status.hash >> 32) as u32, Relaxed);
+        self.residual.store(status.residual.to_bits(), Relaxed);
+        for (word, told) in self.told.iter().zip(status.told) {
+            word.store(told, Relaxed);
         }
-        self.cycles.store(snapshot.cycles, Relaxed);
-        if snapshot.cycles > self.worst_cycles.load(Relaxed) {
-            self.worst_cycles.store(snapshot.cycles, Relaxed);
+        self.machine.store(status.machine as u32, Relaxed);
+        self.path.store(status.path.word(), Relaxed);
+        self.fault.store(status.fault.map_or(0, Fault::word), Relaxed);
+        self.known.store(u32::from(status.known) | u32::from(status.percent) << 8, Relaxed);
+        write(&self.position, status.position);
+        write(&self.actual, status.actual);
+    }
+
+    /// The end of a tick that took so many cycles.
+    #[inline(always)]
+    pub fn close(&self, cycles: u32) {
+        self.cycles.store(cycles, Relaxed);
+        if cycles > self.worst_cycles.load(Relaxed) {
+            self.worst_cycles.store(cycles, Relaxed);
         }
         self.uptime.store(self.uptime.load(Relaxed).wrapping_add(1), Relaxed);
     }
@@ -115,62 +122,84 @@ impl Mailbox {
         self.uptime.load(Relaxed)
     }
 
-    /// The longest tick since the controller started, in cycles of the core.
-    pub fn worst_cycles(&self) -> u32 {
-        self.worst_cycles.load(Relaxed)
+    /// The last tick and the longest since the controller started, in cycles of the core.
+    pub fn cycles(&self) -> [u32; 2] {
+        [self.cycles.load(Relaxed), self.worst_cycles.load(Relaxed)]
     }
 
-    /// What the last tick left, all of it of the same tick. For tasks below the tick.
-    pub fn read(&self) -> Snapshot {
+    /// How the machine stood after the last tick, all of it of the same tick. For tasks below the tick.
+    pub fn read(&self) -> Status<AXES> {
         loop {
             let before = self.uptime();
-            let [x, y, z] = &self.setpoint;
             let [low, high] = &self.hash;
-            let snapshot = Snapshot {
-                state: self.state.load(Relaxed),
+            let known = self.known.load(Relaxed);
+            let status = Status {
+                machine: machine_state(self.machine.load(Relaxed)),
+                motion: motion_state(self.motion.load(Relaxed)),
+                path: PathEnd::from_word(self.path.load(Relaxed)),
+                fault: Fault::from_word(self.fault.load(Relaxed)),
+                known: known as u8,
+                percent: (known >> 8) as u8,
                 ticks: self.ticks.load(Relaxed),
                 pieces: self.pieces.load(Relaxed),
-                setpoint: [x, y, z].map(|word| Fixed(word.load(Relaxed))),
+                setpoint: read(&self.setpoint),
+                position: read(&self.position),
+                actual: read(&self.actual),
                 hash: u64::from(low.load(Relaxed)) | u64::from(high.load(Relaxed)) << 32,
                 residual: f32::from_bits(self.residual.load(Relaxed)),
-                outputs: self.outputs.each_ref().map(|word| word.load(Relaxed)),
-                cycles: self.cycles.load(Relaxed),
+                told: self.told.each_ref().map(|word| word.load(Relaxed)),
             };
             // A tick came in between once at most, unless this task were slower than a period.
             if before == self.uptime() {
-                return snapshot;
+                return status;
             }
         }
     }
 
-    /// The stop input changed. The stop holds after it is released, until [`Mailbox::release`].
-    pub fn set_stop(&self, pressed: bool) {
+    /// The button changed.
+    pub fn set_button(&self, pressed: bool) {
         self.pressed.store(pressed, Relaxed);
         if pressed {
-            self.stopped.store(true, Relaxed);
+            self.button.store(true, Relaxed);
         }
     }
 
-    /// The axes cannot go on. It holds like a stop.
-    #[cold]
-    pub fn set_fault(&self, fault: Fault) {
-        self.fault.store(fault as u32, Relaxed);
-        self.stopped.store(true, Relaxed);
-    }
-
-    /// Whether every motion is to be given up.
+    /// Whether the button is pressed.
     #[inline(always)]
-    pub fn is_stopped(&self) -> bool {
-        self.stopped.load(Relaxed)
+    pub fn is_pressed(&self) -> bool {
+        self.pressed.load(Relaxed)
     }
 
-    /// Ends the stop, unless the input is still pressed.
-    pub fn release(&self) {
-        self.fault.store(0, Relaxed);
-        self.stopped.store(false, Relaxed);
-        // The input may have been pressed since: its task is more urgent than any that calls this.
-        if self.pressed.load(Relaxed) {
-            self.stopped.store(true, Relaxed);
+    /// Whether the button was pressed since the last call, or is now. The tick alone calls this.
+    #[inline(always)]
+    pub fn take_button(&self) -> bool {
+        let was = self.button.load(Relaxed);
+        if was {
+            self.button.store(false, Relaxed);
         }
+        was | self.is_pressed()
     }
+}
+
+#[inline(always)]
+fn write(words: &[AtomicI32; 3], position: Position) {
+    for (word, coordinate) in words.iter().zip(position) {
+        word.store(coordinate.0, Relaxed);
+    }
+}
+
+fn read(words: &[AtomicI32; 3]) -> Position {
+    words.each_ref().map(|word| Fixed(word.load(Relaxed)))
+}
+
+fn motion_state(number: u32) -> motion::State {
+    use motion::State::{Braking, Cancelled, Cancelling, Finished, Held, Holding, Idle, Run, Starved};
+    let all = [Idle, Run, Starved, Finished, Braking, Holding, Held, Cancelling, Cancelled];
+    all.into_iter().find(|&state| state as u32 == number).unwrap_or(Idle)
+}
+
+fn machine_state(number: u32) -> safety::State {
+    use safety::State::{Braking, EStop, Fault, Hold, Homing, Idle, Run};
+    let all = [Idle, Homing, Run, Hold, Braking, Fault, EStop];
+    all.into_iter().find(|&state| state as u32 == number).unwrap_or(Fault)
 }

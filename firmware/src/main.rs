@@ -1,26 +1,28 @@
 //! The Hodograph motion controller.
 //!
-//! One RTIC application. What runs when, from the most urgent:
+//! One RTIC application for every board. What runs when, from the most urgent:
 //!
 //! | task | priority | woken by | does |
 //! | --- | --- | --- | --- |
-//! | `emergency_stop` | 15 | the stop input | switches the drives and the pulses off, in hardware registers, before anything else |
-//! | `tick` | 14 | TIM2, 1024 times a second | one setpoint, two servo axes or three step axes |
+//! | `stop_button` | 15 | the button | takes the drives' power and the pulses, in hardware registers, before anything else |
+//! | `tick` | 14 | TIM2, 1024 times a second | inputs, safety, one setpoint, every axis |
 //! | `serial` | 8 | USART3 | moves bytes between the line and two queues |
 //! | `link` | 2 | `serial` and `idle` | reads frames, validates pieces, answers, reports |
 //! | `idle` | 0 | every interrupt | sleeps; wakes `link` for reports |
 //!
 //! Between them stand single-producer single-consumer queues and the [`mailbox`], so that no task waits for a slower one. Everything
-//! that can be wrong with a job is found in `link`; the tick gets validated pieces only.
+//! that can be wrong with a job is found in `link`; the tick gets validated pieces only. The machine comes from the flash, where
+//! [`kept`] looks for it at the start.
 #![no_std]
 #![no_main]
 
-mod axes;
 mod control;
 mod hardware;
+mod kept;
 mod link;
 mod mailbox;
 mod panic;
+mod restart;
 mod stack;
 mod telemetry;
 
@@ -28,21 +30,22 @@ use defmt_rtt as _;
 
 // RTIC's generated items have no documentation; everything written by hand has.
 #[allow(missing_docs)]
-#[rtic::app(device = stm32h7xx_hal::pac, peripherals = true, dispatchers = [LPTIM1])]
+#[rtic::app(device = crate::hardware::pac, peripherals = true, dispatchers = [UART5])]
 mod app {
     use core::sync::atomic::AtomicU32;
 
     use heapless::spsc::Queue;
+    use shared::machine::image::Image;
     use shared::supply::{Sink, Source};
 
-    use crate::axes::Axes;
-    use crate::control::{Control, DIRECTIVES, Directive, Directives, PIECES, PieceQueue};
-    use crate::hardware::{self, Cycles, SerialPort, StopInput, TickTimer, Watchdog};
-    use crate::link::{Link, RX_BYTES, TX_BYTES};
+    use crate::control::{ANSWERS, Answers, DIRECTIVES, Directives, Hands, PIECES, PieceQueue, Tick};
+    use crate::hardware::{self, Cycles, SerialPort, StopInput, TickTimer, Watchdog, pac};
+    use crate::link::{Lines, Link, RX_BYTES, TX_BYTES};
     use crate::mailbox::MAILBOX;
+    use crate::{kept, restart};
 
-    /// The link looks after its reports every so many ticks, 8 ms.
-    const REPORT_TICKS: u32 = 8;
+    /// The link looks after its reports every so many ticks, 4 ms.
+    const REPORT_TICKS: u32 = 4;
 
     #[shared]
     struct Shared {}
@@ -51,7 +54,7 @@ mod app {
     struct Local {
         timer: TickTimer,
         watchdog: Watchdog,
-        control: Control,
+        tick: Tick,
         port: SerialPort,
         stop: StopInput,
         link: Link,
@@ -61,24 +64,34 @@ mod app {
         pieces: PieceQueue = Queue::new(),
         horizon: AtomicU32 = AtomicU32::new(0),
         directives: Directives = Queue::new(),
+        answers: Answers = Queue::new(),
         received: Queue<u8, RX_BYTES> = Queue::new(),
         to_send: Queue<u8, TX_BYTES> = Queue::new(),
+        image: Image = Image::new(),
     ])]
     fn init(cx: init::Context) -> (Shared, Local) {
         let (piece_producer, piece_consumer) = cx.local.pieces.split();
         let (directive_producer, directive_consumer) = cx.local.directives.split();
+        let (answer_producer, answer_consumer) = cx.local.answers.split();
         let (received_producer, received_consumer) = cx.local.received.split();
         let (to_send_producer, to_send_consumer) = cx.local.to_send.split();
 
-        let board = hardware::start(cx.core, cx.device, received_producer, to_send_consumer);
-        let hardware::Board { timer, actuators, watchdog, port, stop, lamp } = board;
-        defmt::info!("hodograph {}: {} pieces, {} directives", env!("CARGO_PKG_VERSION"), PIECES, DIRECTIVES);
+        let mut early = hardware::start(cx.core, cx.device);
+        let cause = restart::cause(early.cause);
+        let machine = kept::machine(early.flash.unlocked(), cx.local.image);
+        let board = early.finish(&machine, received_producer, to_send_consumer);
+        let hardware::Board { timer, inputs, encoders, drives, ring, enables, watchdog, port, stop, lamp } = board;
+        MAILBOX.set_button(stop.is_pressed());
+        defmt::info!("hodograph {}: {} axes, {} pieces", env!("CARGO_PKG_VERSION"), machine.axes.len(), PIECES);
 
         let horizon: &'static AtomicU32 = cx.local.horizon;
         let (sink, source) = (Sink::new(piece_producer, horizon), Source::new(piece_consumer, horizon));
-        let link = Link::new(received_consumer, to_send_producer, sink, directive_producer, lamp);
-        let control = Control::new(source, directive_consumer, Axes::new(actuators));
-        (Shared {}, Local { timer, watchdog, control, port, stop, link })
+        let lines =
+            Lines { to_send: to_send_producer, pieces: sink, directives: directive_producer, answers: answer_consumer };
+        let hands = Hands { inputs, encoders, drives, ring, enables };
+        let tick = Tick::new(&machine, cause, hands, source, directive_consumer, answer_producer);
+        let link = Link::new(received_consumer, lines, machine, cx.local.image, lamp);
+        (Shared {}, Local { timer, watchdog, tick, port, stop, link })
     }
 
     /// Sleeps between interrupts, and lets the link report.
@@ -96,31 +109,28 @@ mod app {
         }
     }
 
-    /// The stop input: the drives are off a few instructions after the contact, and every motion is given up.
+    /// The button: the drives are off a few instructions after the contact, and the next tick knows.
     #[task(binds = EXTI15_10, priority = 15, local = [stop])]
-    fn emergency_stop(cx: emergency_stop::Context) {
+    fn stop_button(cx: stop_button::Context) {
         let pressed = cx.local.stop.acknowledge();
         if pressed {
             hardware::off();
         }
-        MAILBOX.set_stop(pressed);
+        MAILBOX.set_button(pressed);
     }
 
-    /// The tick: 1024 times a second, above everything but the stop input.
+    /// The tick: 1024 times a second, above everything but the button.
     ///
-    /// Must end within half a period (488 us); `budget.toml` holds what it takes. It looks where the axes are, walks the path by one
-    /// period, has the axes follow, which is a command for each drive or the next half of the step ring, feeds the watchdog, and leaves
-    /// numbers for the reporter. Axes that cannot follow are switched off. No lock that a slower task holds, no logging, no panic.
-    #[task(binds = TIM2, priority = 14, local = [timer, watchdog, control])]
+    /// Must end within half a period (488 us); `budget.toml` holds what it takes. It reads switches and encoders, asks what the machine may
+    /// do, walks the path by one period or looks for home, has the axes follow, which is a command for each drive and the next half of the
+    /// step ring, feeds the watchdog, and leaves numbers for the reporter. No lock that a slower task holds, no logging, no panic.
+    #[task(binds = TIM2, priority = 14, local = [timer, watchdog, tick])]
     fn tick(cx: tick::Context) {
         let cycles = Cycles::start();
         cx.local.timer.acknowledge();
-        if let Err(fault) = cx.local.control.tick(MAILBOX.is_stopped()) {
-            hardware::off();
-            MAILBOX.set_fault(fault);
-        }
+        cx.local.tick.tick(&MAILBOX);
         cx.local.watchdog.feed();
-        cx.local.control.publish(&MAILBOX, cycles.elapsed());
+        MAILBOX.close(cycles.elapsed());
     }
 
     /// Bytes from the line into a queue, and from a queue to the line. A quarter of a tick's period passes between two bytes.
@@ -136,9 +146,9 @@ mod app {
     #[task(priority = 2, local = [link])]
     async fn link(cx: link::Context) {
         cx.local.link.serve();
-        rtic::pend(stm32h7xx_hal::pac::Interrupt::USART3);
+        rtic::pend(pac::Interrupt::USART3);
     }
 
-    // `Directive` is named in a type of `Local` only through `Control`; RTIC wants to see it used.
-    const _: Option<Directive> = None;
+    // These are named in types of `Local` only through others; RTIC wants to see them used.
+    const _: (usize, usize) = (DIRECTIVES, ANSWERS);
 }

@@ -18,6 +18,7 @@
 pub mod accumulator;
 pub mod active;
 pub mod complex;
+pub mod control;
 pub mod curve;
 pub mod duration;
 pub mod error;

@@ -192,8 +192,10 @@ pub struct ServoState<T> {
     stride: T,
     /// The counter at coordinate zero.
     datum: i32,
-    /// The counter at the tick before.
+    /// The counter when it was looked at last.
     encoder: i32,
+    /// The velocity by the counter, in mm/s.
+    measured: T,
     integral: T,
     error: T,
     /// What the limit cut off.
@@ -204,6 +206,11 @@ impl<T: Real> ServoState<T> {
     /// The position error that the last step found, in mm; positive where the axis lags a movement in the positive direction.
     pub fn position_error(&self) -> T {
         self.error
+    }
+
+    /// Where the axis shall be now.
+    pub fn target(&self) -> Fixed {
+        self.target
     }
 
     /// Whether the last command was cut off at the limit.
@@ -296,6 +303,7 @@ impl<T: Real> Servo<T> {
             stride: T::ZERO,
             datum: encoder.wrapping_sub(counts as i32),
             encoder,
+            measured: T::ZERO,
             integral: T::ZERO,
             error: T::ZERO,
             excess: T::ZERO,
@@ -324,27 +332,54 @@ impl<T: Real> Servo<T> {
     /// at the next tick. In mm/s or mm/s^2 as the settings say; always finite and within the limit.
     #[inline(always)]
     pub fn step(&self, state: &mut ServoState<T>, setpoint: Fixed, encoder: i32) -> T {
-        let ahead = T::from_int(setpoint.0.wrapping_sub(state.target.0));
-        let error = self.position_error(state.target, encoder.wrapping_sub(state.datum));
-        let measured = T::from_int(encoder.wrapping_sub(state.encoder)) * self.speed_per_count;
-        let asked = error * self.position_gain + (ahead + state.stride) * self.velocity_feedforward;
+        self.sense(state, encoder);
+        self.command(state, setpoint)
+    }
 
-        let wanted = asked * self.velocity_gain - measured * self.damping
+    /// The first half of a tick: takes over what the counter reads, and returns the position error in mm, positive where the axis lags a
+    /// movement in the positive direction.
+    #[inline(always)]
+    pub fn sense(&self, state: &mut ServoState<T>, encoder: i32) -> T {
+        state.measured = T::from_int(encoder.wrapping_sub(state.encoder)) * self.speed_per_count;
+        state.encoder = encoder;
+        state.error = self.position_error(state.target, encoder.wrapping_sub(state.datum));
+        state.error
+    }
+
+    /// The second half: the command, as [`Servo::step`] says.
+    #[inline(always)]
+    pub fn command(&self, state: &mut ServoState<T>, setpoint: Fixed) -> T {
+        let ahead = T::from_int(setpoint.0.wrapping_sub(state.target.0));
+        let asked = state.error * self.position_gain + (ahead + state.stride) * self.velocity_feedforward;
+
+        let wanted = asked * self.velocity_gain - state.measured * self.damping
             + (ahead - state.stride) * self.acceleration_feedforward
             + state.integral;
         let command = wanted.most(-self.limit).least(self.limit);
         let excess = wanted - command;
-        let velocity_error = asked - measured;
+        let velocity_error = asked - state.measured;
         // At the limit, only what leads back from it is summed up.
         let inward = velocity_error * excess <= T::ZERO;
         state.integral += if inward { velocity_error * self.integral_gain } else { T::ZERO };
 
         state.target = setpoint;
         state.stride = ahead;
-        state.encoder = encoder;
-        state.error = error;
         state.excess = excess;
         command
+    }
+
+    /// Instead of the second half, for a drive without power: the axis is taken to rest where its encoder is, which is returned. The encoder
+    /// goes on counting from the same zero.
+    #[inline(always)]
+    pub fn settle(&self, state: &mut ServoState<T>) -> Fixed {
+        state.target = state.target.offset_by(-state.error);
+        (state.stride, state.integral, state.error, state.excess) = (T::ZERO, T::ZERO, T::ZERO, T::ZERO);
+        state.target
+    }
+
+    /// The largest command, in the drive's unit.
+    pub fn limit(&self) -> T {
+        self.limit
     }
 }
 

@@ -30,6 +30,7 @@ pub mod frame;
 pub mod message;
 pub mod receiver;
 pub mod sender;
+mod view;
 
 pub use action::{Action, Answer, Chunk};
 pub use endpoint::{End, Endpoint, Machine};

@@ -123,6 +123,19 @@ impl MachineSettings {
 }
 
 impl Machine {
+    /// No machine: no axis moves, and a stop that is open is pressed.
+    pub fn none() -> Self {
+        Self {
+            axes: Vec::new(),
+            safety: SafetyConfig { debounce: 1, release: 1, ..SafetyConfig::default() },
+            wiring: Wiring { connected: Levels { estop: true, ..Levels::default() }, active_low: Levels::default() },
+            enables: 0,
+            enables_low: 0,
+            host_lost: HostLost::default(),
+            homing: HomingPlan::new(1),
+        }
+    }
+
     /// What jobs may use of the axes x, y and z. An axis that there is not has no limits but the range of coordinates.
     pub fn soft_limits(&self) -> SoftLimits {
         let travel = |name| {

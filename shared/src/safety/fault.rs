@@ -77,6 +77,8 @@ pub enum Fault {
         /// How it failed.
         fault: HomingFault,
     },
+    /// A tick came too late to prepare the pulses of the next one.
+    LateTick,
     /// The processor was started again.
     Reset {
         /// By what.
@@ -103,6 +105,11 @@ pub enum Refused {
         /// Which axis.
         axis: u8,
     },
+    /// A job that does not begin where the machine stands.
+    Away {
+        /// The first axis that is elsewhere; 0, 1, 2 are x, y, z.
+        axis: u8,
+    },
     /// An acknowledgement while the emergency stop is pressed.
     EStopPressed,
     /// An acknowledgement while a drive is at fault.
@@ -112,6 +119,8 @@ pub enum Refused {
     },
     /// A search for home without an axis, or with one that has no home switch.
     NoHome,
+    /// A job for a controller that knows no machine.
+    NoMachine,
 }
 
 impl fmt::Display for Fault {
@@ -131,6 +140,7 @@ impl fmt::Display for Fault {
             Self::Homing { axis, fault: HomingFault::Stuck } => {
                 write!(f, "the home switch of axis {axis} did not let go when the axis backed off")
             }
+            Self::LateTick => write!(f, "a tick came too late for its pulses"),
             Self::Reset { cause: ResetCause::Ordinary } => write!(f, "the controller was started"),
             Self::Reset { cause: ResetCause::Watchdog } => write!(f, "the watchdog restarted the controller"),
             Self::Reset { cause: ResetCause::BrownOut } => write!(f, "the supply of the controller failed"),
@@ -147,8 +157,17 @@ impl fmt::Display for Refused {
                 write!(f, "the position of axis {axis} is unknown; home it before a job in machine coordinates")
             }
             Self::OnLimit { axis } => write!(f, "axis {axis} stands on a limit switch; home it or move it off first"),
+            Self::Away { axis } => {
+                write!(
+                    f,
+                    "axis {axis} does not stand where the job begins; go there first, or run the job from where it stands"
+                )
+            }
             Self::EStopPressed => write!(f, "the emergency stop is pressed; release it first"),
             Self::DriveFault { axis } => write!(f, "the drive of axis {axis} still reports a fault; clear it first"),
+            Self::NoMachine => {
+                write!(f, "the controller knows no machine; send it one with `hodograph machine FILE --port P --write`")
+            }
             Self::NoHome => write!(f, "no axis was named, or one without a home switch"),
         }
     }

@@ -26,6 +26,7 @@
 
 mod debounce;
 mod fault;
+mod fault_word;
 mod table;
 
 #[cfg(test)]
@@ -215,6 +216,12 @@ impl Safety {
         self.state
     }
 
+    /// The state, what is wrong, and the axes whose position is known.
+    #[inline(always)]
+    pub fn summary(&self) -> (State, Option<Fault>, u8) {
+        (self.state, self.fault, self.known)
+    }
+
     /// One tick. The emergency stop comes first, then a drive's fault, a limit switch, and the event.
     pub fn step(&mut self, config: &SafetyConfig, levels: Levels, event: Option<Event>) -> Outputs {
         let before = self.state;
@@ -304,6 +311,9 @@ impl Safety {
     fn start_refusal(&self, config: &SafetyConfig, coordinates: Coordinates) -> Option<Refused> {
         if !self.state.takes_jobs() {
             return Some(Refused::State { state: self.state });
+        }
+        if config.axes == 0 {
+            return Some(Refused::NoMachine);
         }
         if let Some(axis) = first(self.low.level() | self.high.level()) {
             return Some(Refused::OnLimit { axis });

@@ -16,7 +16,7 @@ pub struct SerialPort {
 
 impl SerialPort {
     /// Listens.
-    pub fn new(
+    pub(super) fn new(
         mut rx: Rx<USART3>,
         tx: Tx<USART3>,
         received: Producer<'static, u8>,

@@ -1,7 +1,6 @@
-//! The stop input: an interrupt at both edges.
+//! The button of the board, as a stop beside the emergency stop: an interrupt when it is pressed.
 //!
-//! The button of the board closes when it is pressed. A machine's stop chain opens, so that a broken wire stops it too: turn the level
-//! in [`StopInput::acknowledge`] around for one, and the pin's pull to match.
+//! The emergency stop itself needs no interrupt: it takes the drives' power by hardware, and the next tick sees it.
 
 use stm32h7xx_hal::gpio::{Edge, ExtiPin, Input, PC13};
 use stm32h7xx_hal::pac;
@@ -13,20 +12,20 @@ pub struct StopInput {
 
 impl StopInput {
     /// Listens to `pin`.
-    pub fn new(mut pin: PC13<Input>, syscfg: &mut pac::SYSCFG, exti: &mut pac::EXTI) -> Self {
+    pub(super) fn new(mut pin: PC13<Input>, syscfg: &mut pac::SYSCFG, exti: &mut pac::EXTI) -> Self {
         pin.make_interrupt_source(syscfg);
         pin.trigger_on_edge(exti, Edge::RisingFalling);
         pin.enable_interrupt(exti);
         Self { pin }
     }
 
-    /// Takes the interrupt back, and says whether the stop is pressed now.
+    /// Takes the interrupt back, and says whether the button is pressed now.
     pub fn acknowledge(&mut self) -> bool {
         self.pin.clear_interrupt_pending_bit();
         self.pin.is_high()
     }
 
-    /// Whether the stop is pressed now.
+    /// Whether the button is pressed now.
     pub fn is_pressed(&self) -> bool {
         self.pin.is_high()
     }

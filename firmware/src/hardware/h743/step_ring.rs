@@ -2,7 +2,7 @@
 //!
 //! TIM8's update, once a slot, asks DMA1 stream 0 (DMAMUX1 request 51) for one word from the ring to port D's set/reset register. The
 //! ring stands in SRAM1: DMA1 does not reach the DTCM, where everything else is, RM0433 rev 9 table 3. The core's data cache stays off,
-//! so that what the tick writes is in memory when the barrier in [`StepRing::filled`] is past; a firmware that switches it on
+//! so that what the tick writes is in memory when the barrier in `filled` is past; a firmware that switches it on
 //! has to make this region non-cacheable in the MPU.
 //!
 //! TIM2 and TIM8 run from the same clock, and a tick is [`SLOTS`] slots exactly: once they have been started together, the phase between
@@ -14,12 +14,13 @@
 use core::cell::UnsafeCell;
 use core::mem::MaybeUninit;
 
+use shared::control::{Late, Ring};
 use shared::steps::Half;
 use stm32h7xx_hal::pac;
 use stm32h7xx_hal::rcc::{ResetEnable, rec};
 
+use super::pins::PORTS;
 use super::timer::PERIOD;
-use crate::axes::Fault;
 
 /// Slots in a tick: 0.52 us each.
 pub const SLOTS: usize = 1_875;
@@ -53,14 +54,14 @@ pub struct StepRing {
     timer: pac::TIM8,
     dma: pac::DMA1,
     mux: pac::DMAMUX1,
-    armed: bool,
+    played: bool,
     /// The half that was filled last.
     filled: Half,
 }
 
 impl StepRing {
     /// A ring that is not played.
-    pub fn new(
+    pub(super) fn new(
         (timer, timer_rec): (pac::TIM8, rec::Tim8),
         (dma, dma_rec): (pac::DMA1, rec::Dma1),
         mux: pac::DMAMUX1,
@@ -69,23 +70,23 @@ impl StepRing {
         let _ = dma_rec.enable().reset();
         // SAFETY: the clock of SRAM1, which no other code switches; the HAL has given out the rest of the register by now.
         unsafe { (*pac::RCC::ptr()).ahb2enr.modify(|_, w| w.sram1en().set_bit()) };
-        Self { timer, dma, mux, armed: false, filled: Half::Second }
+        Self { timer, dma, mux, played: false, filled: Half::Second }
     }
 
-    /// Gives the pins their levels at rest. They are outputs by then.
-    pub fn connect(&mut self, idle: u32) {
-        // SAFETY: port D's set/reset register changes the pins of the word alone.
-        unsafe { (*pac::GPIOD::ptr()).bsrr.write(|w| w.bits(idle)) };
+    /// Stops the slots, from wherever: one store, after which no request comes.
+    #[inline(always)]
+    pub(super) fn off() {
+        // SAFETY: zero stops the timer, whatever it did.
+        unsafe { (*pac::TIM8::ptr()).cr1.write(|w| w.bits(0)) };
     }
 
-    /// Has the ring played from its start, full of nothing, and starts the tick's period anew with it.
-    pub fn arm(&mut self) {
-        self.disarm();
+    /// Points the stream at the ring, from its start; false where it cannot be stopped.
+    fn aim(&mut self) -> bool {
         let stream = &self.dma.st[0];
         stream.cr.write(|w| w.en().clear_bit());
-        // A stream that serves a request takes a few cycles to stop; one that never does is not armed.
+        // A stream that serves a request takes a few cycles to stop; one that never does is not aimed.
         if (0..1_000).all(|_| stream.cr.read().en().bit_is_set()) {
-            return;
+            return false;
         }
         let memory = MEMORY.0.get();
         // SAFETY: nothing plays the ring, and `&mut self` is the only way to it; zeros are words.
@@ -104,6 +105,26 @@ impl StepRing {
             stream.cr.write(|w| w.bits(3 << 16 | 2 << 13 | 2 << 11 | 1 << 10 | 1 << 8 | 1 << 6));
         }
         stream.cr.modify(|_, w| w.en().set_bit());
+        true
+    }
+}
+
+impl Ring<PORTS, SLOTS> for StepRing {
+    #[inline(always)]
+    fn is_played(&self) -> bool {
+        self.played
+    }
+
+    /// The tick's period begins anew with the ring.
+    #[cold]
+    #[inline(never)]
+    fn play(&mut self, [idle]: [u32; PORTS]) {
+        self.stop();
+        // SAFETY: port D's set/reset register changes the pins of the word alone, which are outputs.
+        unsafe { (*pac::GPIOD::ptr()).bsrr.write(|w| w.bits(idle)) };
+        if !self.aim() {
+            return;
+        }
         self.timer.arr.write(|w| w.arr().bits((SLOT - 1) as u16));
         self.timer.dier.write(|w| w.ude().set_bit());
         self.filled = Half::Second;
@@ -117,53 +138,37 @@ impl StepRing {
             self.timer.cr1.write(|w| w.cen().set_bit());
             tick.cr1.write(|w| w.cen().set_bit());
         });
-        self.armed = true;
+        self.played = true;
     }
 
-    /// No word is played from here on.
     #[inline(always)]
-    pub fn disarm(&mut self) {
-        self.armed = false;
+    fn stop(&mut self) {
+        self.played = false;
         Self::off();
     }
 
-    /// Whether the ring is played, unless [`StepRing::off`] was called.
+    /// An error where the half that is not played is not the one after the last, or where too much of the other one is past.
     #[inline(always)]
-    pub fn is_armed(&self) -> bool {
-        self.armed
-    }
-
-    /// Stops the slots, from wherever: one store, after which no request comes.
-    #[inline(always)]
-    pub fn off() {
-        // SAFETY: zero stops the timer, whatever it did.
-        unsafe { (*pac::TIM8::ptr()).cr1.write(|w| w.bits(0)) };
-    }
-
-    /// The half that is to be filled, which is the one that is not played. An error where that is not the one after the last, or
-    /// where too much of the other one is past.
-    #[inline(always)]
-    pub fn next_half(&self) -> Result<Half, Fault> {
+    fn next_half(&self) -> Result<Half, Late> {
         let played = WORDS.saturating_sub(self.dma.st[0].ndtr.read().bits() as usize);
         let (half, into) = if played < SLOTS { (Half::Second, played) } else { (Half::First, played - SLOTS) };
-        if self.armed && (half == self.filled || into > LATEST) { Err(Fault::MissedHalf) } else { Ok(half) }
+        if half == self.filled || into > LATEST { Err(Late) } else { Ok(half) }
     }
 
-    /// The words of a half that [`StepRing::next_half`] named in this tick.
     #[inline(always)]
-    pub fn words(&mut self, half: Half) -> &mut [u32; SLOTS] {
-        // SAFETY: `arm` has initialized the memory; `&mut self` is the only way to it; the DMA only reads, and in this tick only
+    fn words(&mut self, half: Half) -> [&mut [u32; SLOTS]; PORTS] {
+        // SAFETY: `play` has initialized the memory; `&mut self` is the only way to it; the DMA only reads, and in this tick only
         // the other half.
         let [first, second] = unsafe { (*MEMORY.0.get()).assume_init_mut() };
-        match half {
+        [match half {
             Half::First => first,
             Half::Second => second,
-        }
+        }]
     }
 
-    /// Takes note that `half` is filled, and waits until its words are in memory.
+    /// Waits until the words are in memory.
     #[inline(always)]
-    pub fn filled(&mut self, half: Half) {
+    fn filled(&mut self, half: Half) {
         self.filled = half;
         cortex_m::asm::dsb();
     }

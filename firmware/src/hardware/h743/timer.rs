@@ -19,7 +19,7 @@ pub struct TickTimer {
 
 impl TickTimer {
     /// Starts the ticks.
-    pub fn new(timer: pac::TIM2, rec: rec::Tim2) -> Self {
+    pub(super) fn new(timer: pac::TIM2, rec: rec::Tim2) -> Self {
         let _ = rec.enable().reset();
         timer.arr.write(|w| w.arr().bits(PERIOD - 1));
         timer.dier.write(|w| w.uie().set_bit());

@@ -13,7 +13,7 @@ pub struct Watchdog(pac::IWDG);
 
 impl Watchdog {
     /// Starts it, for good.
-    pub fn start(watchdog: pac::IWDG) -> Self {
+    pub(super) fn start(watchdog: pac::IWDG) -> Self {
         // SAFETY: the keys and values of RM0433 rev 9 section 46.4: start, unlock, prescaler 4, reload.
         unsafe {
             watchdog.kr.write(|w| w.bits(0xcccc));

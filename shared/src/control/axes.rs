@@ -1,0 +1,302 @@
+//! The axes of a machine: each a step axis or a servo, by configuration.
+//!
+//! All of them follow targets in machine coordinates, where they shall stand at the next tick. A servo axis has a step axis too that
+//! never moves, so that the pulses of any mixture are one call.
+
+use core::fmt;
+
+use super::ring::Ring;
+use crate::fixed::{Fixed, Position};
+use crate::machine::{AxisDrive, AxisName, Drive, Machine, StepDrive};
+use crate::safety::Fault;
+use crate::servo::{Servo, ServoState};
+use crate::steps::{Half, StepAxes, StepError, StepFault, StepSettings, StepState};
+
+/// The pins of a step axis on a board: port and bit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct StepPins {
+    /// Where a pulse comes out.
+    pub step: (u8, u8),
+    /// Where the direction comes out.
+    pub direction: (u8, u8),
+}
+
+/// Why a machine cannot be driven by this controller.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum AxesError {
+    /// It has more axes than the board has connectors.
+    TooMany {
+        /// What the board has.
+        most: u8,
+    },
+    /// It has an axis that no path moves: there are x, y and z.
+    Name {
+        /// Which axis.
+        axis: u8,
+    },
+    /// A step axis that cannot be played.
+    Steps(StepError),
+}
+
+impl fmt::Display for AxesError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::TooMany { most } => write!(f, "the machine has more axes than the board, which has {most}"),
+            Self::Name { axis } => {
+                write!(f, "axis {axis} is none of x, y and z, which are all that this controller moves")
+            }
+            Self::Steps(error) => error.fmt(f),
+        }
+    }
+}
+
+impl core::error::Error for AxesError {}
+
+/// A servo axis with what it remembers.
+#[derive(Clone, Copy, Debug)]
+struct ServoAxis {
+    servo: Servo<f32>,
+    state: ServoState<f32>,
+    /// The distance from the setpoint that is a fault, in mm.
+    following_error: f32,
+    /// Whether the encoder counts down in the positive direction.
+    encoder_inverted: bool,
+    /// Where the encoder was seen.
+    seen: Fixed,
+    /// What a command in the drive's unit is of its full range; below zero where the sign is to be changed.
+    level: f32,
+}
+
+/// See the module. `AXES` is how many connectors the board has; a machine may use fewer.
+#[derive(Clone, Debug)]
+pub struct Axes<const AXES: usize, const PORTS: usize, const SLOTS: usize> {
+    servos: [Option<ServoAxis>; AXES],
+    steps: StepAxes<AXES, PORTS, SLOTS>,
+    step_state: StepState<AXES>,
+    has_steps: bool,
+    /// Which coordinate of a position each axis follows; none where there is no axis.
+    coordinates: [Option<u8>; AXES],
+    /// Where each axis shall be now.
+    targets: [Fixed; AXES],
+    counts: [i32; AXES],
+}
+
+/// What the drives get in a tick.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Commands<const AXES: usize> {
+    /// Of a servo: its command, in the drive's unit. Of a step axis: 0.
+    pub commands: [f32; AXES],
+    /// The same as a part of the drive's full range, -1..=1, with the sign that the drive wants.
+    pub levels: [f32; AXES],
+}
+
+impl<const AXES: usize> Commands<AXES> {
+    /// Nothing.
+    pub const ZERO: Self = Self { commands: [0.0; AXES], levels: [0.0; AXES] };
+}
+
+/// A drive for a connector without a step axis: the slowest pulses there are, and never one.
+const STILL: StepDrive = StepDrive {
+    steps_per_mm: 1.0,
+    pulse: 1e-6,
+    gap: 1e-6,
+    setup: 1e-6,
+    hold: 0.0,
+    step_inverted: false,
+    direction_inverted: false,
+};
+
+impl<const AXES: usize, const PORTS: usize, const SLOTS: usize> Axes<AXES, PORTS, SLOTS> {
+    /// The axes of a machine on a board with these pins, at rest at 0 wherever they stand. Load time. Errors: a machine that this
+    /// controller cannot drive.
+    pub fn new(machine: &Machine, pins: &[StepPins; AXES]) -> Result<Self, AxesError> {
+        if machine.axes.len() > AXES {
+            return Err(AxesError::TooMany { most: AXES as u8 });
+        }
+        let mut settings = pins.map(|pins| STILL.on_pins(pins.step, pins.direction, SLOTS));
+        let mut servos = [None; AXES];
+        let mut coordinates = [None; AXES];
+        let mut has_steps = false;
+        let places = settings.iter_mut().zip(pins).zip(servos.iter_mut().zip(&mut coordinates));
+        for ((number, axis), ((setting, pins), (servo, coordinate))) in (0..).zip(&machine.axes).zip(places) {
+            *coordinate = Some(match axis.name {
+                AxisName::X => 0,
+                AxisName::Y => 1,
+                AxisName::Z => 2,
+                AxisName::A | AxisName::B | AxisName::C => return Err(AxesError::Name { axis: number }),
+            });
+            match axis.drive {
+                Drive::Step(drive) => {
+                    has_steps = true;
+                    *setting = drive.on_pins(pins.step, pins.direction, SLOTS);
+                }
+                Drive::Servo { servo: active, following_error, encoder_inverted, command_inverted } => {
+                    let level = 1.0 / active.limit();
+                    *servo = Some(ServoAxis {
+                        servo: active,
+                        state: active.at_rest(Fixed(0), 0),
+                        following_error,
+                        encoder_inverted,
+                        seen: Fixed(0),
+                        level: if command_inverted { -level } else { level },
+                    });
+                }
+            }
+        }
+        let steps = StepSettings::activate(&settings).map_err(AxesError::Steps)?;
+        let step_state = steps.at_rest([Fixed(0); AXES]);
+        Ok(Self { servos, steps, step_state, has_steps, coordinates, targets: [Fixed(0); AXES], counts: [0; AXES] })
+    }
+
+    /// Whether there are step axes.
+    #[inline(always)]
+    pub fn has_steps(&self) -> bool {
+        self.has_steps
+    }
+
+    /// Where each axis shall be now.
+    #[inline(always)]
+    pub fn targets(&self) -> [Fixed; AXES] {
+        self.targets
+    }
+
+    /// Takes over what the encoders read. Errors: the first axis that is too far from where it shall be now.
+    #[inline(always)]
+    pub fn sense(&mut self, counts: [i32; AXES]) -> Result<(), Fault> {
+        self.counts = counts;
+        let mut found = Ok(());
+        for (number, (servo, count)) in (0..).zip(self.servos.iter_mut().zip(&mut self.counts)) {
+            let Some(axis) = servo else { continue };
+            if axis.encoder_inverted {
+                *count = count.wrapping_neg();
+            }
+            let error = axis.servo.sense(&mut axis.state, *count);
+            // Written so that no NaN passes.
+            axis.seen = axis.state.target().offset_by(-error);
+            let follows = error <= axis.following_error && error >= -axis.following_error;
+            if !follows {
+                found = found.and(Err(Fault::FollowingError { axis: number }));
+            }
+        }
+        found
+    }
+
+    /// Takes an axis to stand at `position`, without a motion. It is at rest, and the tick has sensed.
+    pub fn stand_at(&mut self, number: usize, position: Fixed) {
+        let Some(target) = self.targets.get_mut(number) else { return };
+        *target = position;
+        match self.servos.get_mut(number) {
+            Some(Some(axis)) => {
+                let count = self.counts.get(number).copied().unwrap_or(0);
+                axis.state = axis.servo.at_rest(position, count);
+            }
+            _ => self.steps.stand_at(&mut self.step_state, self.targets),
+        }
+    }
+
+    /// Plays the steps that lead to `targets` and commands the drives. Errors: an axis that cannot keep up; the words are good all the same.
+    #[inline(always)]
+    pub fn follow(
+        &mut self,
+        targets: [Fixed; AXES],
+        half: Option<Half>,
+        ring: &mut impl Ring<PORTS, SLOTS>,
+    ) -> (Commands<AXES>, Result<(), Fault>) {
+        self.targets = targets;
+        let mut commands = Commands::ZERO;
+        let outputs = commands.commands.iter_mut().zip(&mut commands.levels);
+        for ((servo, (command, level)), target) in self.servos.iter_mut().zip(outputs).zip(targets) {
+            if let Some(axis) = servo {
+                *command = axis.servo.command(&mut axis.state, target);
+                *level = *command * axis.level;
+            }
+        }
+        let Some(half) = half else { return (commands, Ok(())) };
+        let filled = self.steps.fill(&mut self.step_state, targets, half, ring.words(half));
+        ring.filled(half);
+        let fault = filled.map_err(|fault| match fault {
+            StepFault::TooFast { axis, .. } | StepFault::Late { axis, .. } => Fault::Steps { axis },
+        });
+        (commands, fault)
+    }
+
+    /// The drives have no power, and no step is played: servos are taken to rest where their encoders are, and steps that are owed
+    /// are given up.
+    pub fn go_limp(&mut self) {
+        for (target, servo) in self.targets.iter_mut().zip(&mut self.servos) {
+            if let Some(axis) = servo {
+                *target = axis.servo.settle(&mut axis.state);
+            }
+        }
+        self.step_state = self.steps.at_rest(self.targets);
+    }
+
+    /// Plays the ring, if there is anything to play and it is not played yet.
+    pub fn play(&mut self, ring: &mut impl Ring<PORTS, SLOTS>) {
+        if self.has_steps && !ring.is_played() {
+            self.step_state = self.steps.at_rest(self.targets);
+            ring.play(self.steps.idle());
+        }
+    }
+
+    /// The coordinates of a position for each axis.
+    #[inline(always)]
+    pub fn of_position(&self, position: &Position) -> [Fixed; AXES] {
+        self.coordinates.map(|coordinate| match coordinate {
+            Some(coordinate) => position.get(usize::from(coordinate)).copied().unwrap_or(Fixed(0)),
+            None => Fixed(0),
+        })
+    }
+
+    /// The position that values of the axes make; 0 where there is no axis.
+    #[inline(always)]
+    pub fn position(&self, values: &[Fixed; AXES]) -> Position {
+        let mut position = [Fixed(0); 3];
+        for (coordinate, value) in self.coordinates.iter().zip(values) {
+            if let Some(place) = coordinate.and_then(|coordinate| position.get_mut(usize::from(coordinate))) {
+                *place = *value;
+            }
+        }
+        position
+    }
+
+    /// Where the axes are: a servo by its encoder, a step axis where it was told to be.
+    #[inline(always)]
+    pub fn actual(&self) -> [Fixed; AXES] {
+        let mut actual = self.targets;
+        for (place, servo) in actual.iter_mut().zip(&self.servos) {
+            if let Some(axis) = servo {
+                *place = axis.seen;
+            }
+        }
+        actual
+    }
+
+    /// What each axis was told, for reports: a drive's command as the bits of an f32, or where a step axis stands, in steps.
+    #[inline(always)]
+    pub fn told(&self, commands: &Commands<AXES>) -> [u32; AXES] {
+        let mut told = commands.commands.map(f32::to_bits);
+        for (axis, (word, servo)) in told.iter_mut().zip(&self.servos).enumerate() {
+            if servo.is_none() {
+                *word = self.step_state.position(axis).unwrap_or(0) as u32;
+            }
+        }
+        told
+    }
+}
+
+/// The settings of the pulses of every axis on a board: what a decoder is made with.
+pub fn step_settings<const AXES: usize>(
+    machine: &crate::machine::MachineSettings,
+    pins: &[StepPins; AXES],
+    slots: usize,
+) -> [StepSettings; AXES] {
+    let mut settings = pins.map(|pins| STILL.on_pins(pins.step, pins.direction, slots));
+    for ((setting, pins), axis) in settings.iter_mut().zip(pins).zip(&machine.axes) {
+        if let AxisDrive::Step(drive) = axis.drive {
+            *setting = drive.on_pins(pins.step, pins.direction, slots);
+        }
+    }
+    settings
+}
