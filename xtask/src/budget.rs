@@ -10,7 +10,7 @@ use std::path::PathBuf;
 use clap::Args;
 use serde::{Deserialize, Serialize};
 
-use crate::build::{Axes, firmware};
+use crate::build::{Board, firmware};
 use crate::tools::{Failure, Outcome, board_cargo, check_board_compiler, compiler, output, root};
 
 /// The part by which a figure may grow unseen.
@@ -31,6 +31,10 @@ const PIECE_STAGES: [&str; 3] = ["curve", "feed law", "interpolator"];
 
 /// Instructions of the whole interrupt at order 1, at most.
 const INTERRUPT_BAR: u32 = 800;
+
+/// The machines in which it is measured.
+const SERVOS: &str = "examples/mill-servos.toml";
+const STEPS: &str = "examples/mill-steps.toml";
 
 /// Measure the image on the virtual board and compare it with budget.toml
 #[derive(Args)]
@@ -95,10 +99,11 @@ pub fn check() -> Outcome {
 }
 
 fn measure() -> Outcome<Figures> {
-    let (tandem, image) = (firmware(Axes::Tandem)?, firmware(Axes::Servos)?);
+    let image = firmware(Board::default())?;
     check_board_compiler()?;
     let mut board = board_cargo(&["run", "--release", "--quiet"])?;
-    board.args(["--", "budget", "--elf"]).arg(image).arg("--tandem").arg(tandem);
+    board.args(["--", "budget", "--elf"]).arg(image);
+    board.arg("--servos").arg(root().join(SERVOS)).arg("--steps").arg(root().join(STEPS));
     let text = output(&mut board)?;
     let mut figures: Figures =
         serde_json::from_str(&text).map_err(|error| Failure::new(format!("the virtual board's figures: {error}")))?;

@@ -4,67 +4,50 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
-use crate::tools::{Failure, Outcome, TARGET, cargo, require_target, run, target_dir};
+use crate::tools::{Outcome, TARGET, cargo, require_target, run, target_dir};
 
 /// Build the firmware
 #[derive(Args)]
-#[command(after_help = "Example:\n  cargo xtask build --axes steps")]
+#[command(after_help = "Example:\n  cargo xtask build --board nucleo-h743zi2")]
 pub struct Build {
-    /// What it moves
+    /// For which board
     #[arg(long, value_enum, default_value_t)]
-    axes: Axes,
+    board: Board,
 }
 
 impl Build {
     /// Builds, and says where the image is.
     pub fn run(self) -> Outcome {
-        println!("{}", firmware(self.axes)?.display());
+        println!("{}", firmware(self.board)?.display());
         Ok(())
     }
 }
 
-/// What the firmware moves.
+/// The boards.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
-pub enum Axes {
-    /// Two servo axes.
+pub enum Board {
+    /// ST's NUCLEO-H743ZI2; the virtual board has its part.
     #[default]
-    Servos,
-    /// Three step axes.
-    Steps,
-    /// Three step axes, the third of which is a second motor on x.
-    Tandem,
+    NucleoH743zi2,
 }
 
-impl Axes {
+impl Board {
     /// All of them.
-    pub const ALL: [Self; 3] = [Self::Servos, Self::Steps, Self::Tandem];
+    pub const ALL: [Self; 1] = [Self::NucleoH743zi2];
 
-    /// The feature of the firmware, and the name of the image.
-    fn feature(self) -> Option<&'static str> {
+    /// The feature of the firmware.
+    fn feature(self) -> &'static str {
         match self {
-            Self::Servos => None,
-            Self::Steps => Some("steps"),
-            Self::Tandem => Some("tandem"),
+            Self::NucleoH743zi2 => "nucleo-h743zi2",
         }
     }
 }
 
-/// Builds the firmware and returns where its image is. Each kind of axes has an image of its own beside the others.
-pub fn firmware(axes: Axes) -> Outcome<PathBuf> {
+/// Builds the firmware and returns where its image is.
+pub fn firmware(board: Board) -> Outcome<PathBuf> {
     require_target(true)?;
     let mut build = cargo(&["build", "--quiet"]);
     build.args(["--package", "firmware", "--profile", "firmware", "--target", TARGET]);
-    let folder = target_dir().join(TARGET).join("firmware");
-    let image = match axes.feature() {
-        None => folder.join("firmware-servos"),
-        Some(feature) => {
-            build.args(["--features", feature]);
-            folder.join(format!("firmware-{feature}"))
-        }
-    };
-    run(&mut build)?;
-    // Cargo has one place for all of them.
-    std::fs::copy(folder.join("firmware"), &image)
-        .map_err(|error| Failure::new(format!("{}: {error}", image.display())))?;
-    Ok(image)
+    run(build.args(["--no-default-features", "--features", board.feature()]))?;
+    Ok(target_dir().join(TARGET).join("firmware").join("firmware"))
 }

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use crate::build::{Axes, firmware};
+use crate::build::{Board, firmware};
 use crate::tools::{Failure, Outcome, board_cargo, cargo, check_board_compiler, run, target_dir};
 
 /// Run a job on the firmware's own image, on the virtual board
@@ -15,6 +15,9 @@ use crate::tools::{Failure, Outcome, board_cargo, cargo, check_board_compiler, r
 pub struct Emulate {
     /// The job
     job: String,
+    /// The machine that the board is told
+    #[arg(long, value_name = "MACHINE.toml", default_value = "examples/mill-servos.toml")]
+    machine: String,
     /// w: 0 keeps the feed of the contact point, 1 that of the tool's centre
     #[arg(long, value_name = "W", allow_hyphen_values = true)]
     weight: Option<String>,
@@ -44,11 +47,11 @@ pub struct Emulate {
 impl Emulate {
     /// Prepares the job, builds the image, and runs it.
     pub fn run(self) -> Outcome {
-        let image = firmware(Axes::Servos)?;
+        let image = firmware(Board::default())?;
         let job = self.prepare()?;
         check_board_compiler()?;
         let mut board = board_cargo(&["run", "--release", "--quiet"])?;
-        board.arg("--").arg("run").arg("--elf").arg(image).arg(&job);
+        board.arg("--").arg("run").arg("--elf").arg(image).arg("--machine").arg(&self.machine).arg(&job);
         if let Some(json) = &self.json {
             board.arg("--json").arg(json);
         }

@@ -2,9 +2,9 @@
 
 use std::process::Command;
 
-use clap::{Args, ValueEnum};
+use clap::Args;
 
-use crate::build::{Axes, firmware};
+use crate::build::{Board, firmware};
 use crate::tools::{Failure, Outcome, run};
 
 /// Build the firmware and flash it onto a board
@@ -14,25 +14,12 @@ pub struct Flash {
     /// The board at the debug probe
     #[arg(long, value_enum)]
     board: Board,
-    /// What it moves
-    #[arg(long, value_enum, default_value_t)]
-    axes: Axes,
 }
 
-/// A board that the firmware knows.
-#[derive(Clone, Copy, ValueEnum)]
-enum Board {
-    /// ST's NUCLEO-H743ZI2, by its own ST-Link
-    #[value(name = "nucleo-h743zi2")]
-    NucleoH743Zi2,
-}
-
-impl Board {
-    /// The name of its part in probe-rs.
-    fn chip(self) -> &'static str {
-        match self {
-            Self::NucleoH743Zi2 => "STM32H743ZITx",
-        }
+/// The name of a board's part in probe-rs.
+fn chip(board: Board) -> &'static str {
+    match board {
+        Board::NucleoH743zi2 => "STM32H743ZITx",
     }
 }
 
@@ -44,8 +31,8 @@ impl Flash {
                 "probe-rs, which speaks to the debug probe, is not installed; run `cargo install probe-rs-tools --locked`",
             ));
         }
-        let image = firmware(self.axes)?;
-        let chip = self.board.chip();
+        let image = firmware(self.board)?;
+        let chip = chip(self.board);
         run(Command::new("probe-rs").args(["download", "--chip", chip]).arg(&image))?;
         run(Command::new("probe-rs").args(["reset", "--chip", chip]))
     }

@@ -5,7 +5,7 @@ use std::process::Command;
 use clap::Args;
 
 use crate::budget;
-use crate::build::{Axes, firmware};
+use crate::build::{Board, firmware};
 use crate::tools::{Failure, Outcome, TARGET, board_cargo, cargo, check_board_compiler, require_target, run, watch};
 
 /// Run every test: on the host, the build for the target, on the virtual board, the budgets
@@ -90,7 +90,7 @@ pub fn all(tally: &mut Tally, install: bool) -> Outcome {
     tally.step("shared without a standard library, for the target", || {
         run(&mut cargo(&["build", "--quiet", "--package", "shared", "--target", TARGET]))
     });
-    tally.step("the firmware", || Axes::ALL.iter().try_for_each(|&axes| firmware(axes).map(|_| ())));
+    tally.step("the firmware", || Board::ALL.iter().try_for_each(|&board| firmware(board).map(|_| ())));
     tally.tests("tests on the virtual board", &mut board_cargo(&["test", "--release", "--quiet"])?);
     tally.step("budgets", budget::check);
     Ok(())

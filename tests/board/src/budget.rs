@@ -7,6 +7,7 @@ use serde::Serialize;
 use crate::Error;
 use crate::image::Image;
 use crate::jobs::{Kind, ORDERS, diagonal, job};
+use crate::mounting::Mounting;
 use crate::probe::EXCEPTION_FRAME;
 use crate::reach::Reach;
 use crate::run::run_job;
@@ -35,8 +36,8 @@ pub struct Budget {
     pub reached: Vec<String>,
 }
 
-/// Measures `image`; `progress` is told what is measured next.
-pub fn measure(image: &Image, mut progress: impl FnMut(&str)) -> Result<Budget, Error> {
+/// Measures `image` in a machine of servo axes that do not move; `progress` is told what is measured next.
+pub fn measure(image: &Image, servos: &Mounting, mut progress: impl FnMut(&str)) -> Result<Budget, Error> {
     let reach = Reach::of_tick(image)?;
     let stages = Stages::new(image)?;
     let addresses = reach.instructions(image);
@@ -47,7 +48,7 @@ pub fn measure(image: &Image, mut progress: impl FnMut(&str)) -> Result<Budget, 
             let name = format!("{} {order_name}", kind.name());
             progress(&name);
             let (header, pieces) = job(kind, order);
-            let counted = run_job(image, header, pieces, 1.0, |probe| {
+            let counted = run_job(image, servos, header, pieces, 1.0, |probe| {
                 probe.count_instructions(addresses.clone(), RAMP_TICKS);
             })?;
             let ticks = &counted.seen.ticks;
@@ -77,17 +78,17 @@ pub fn measure(image: &Image, mut progress: impl FnMut(&str)) -> Result<Budget, 
     })
 }
 
-/// The rows of an image with three step axes, two of them on x: the interrupt along an offset PH piece, and at rest, in instructions;
-/// and what the image takes.
+/// The rows of `image` in a machine of three step axes: the interrupt along an offset PH piece, and at rest, in instructions.
 pub fn measure_steps(
     image: &Image,
+    steps: &Mounting,
     mut progress: impl FnMut(&str),
 ) -> Result<BTreeMap<String, BTreeMap<String, u32>>, Error> {
     let (mut rows, mut stack) = (BTreeMap::new(), 0);
     for (rate, name) in [(900_000.0, "steps 3 x 900000/s"), (100_000.0, "steps 3 x 100000/s")] {
         progress(name);
         let (header, pieces) = diagonal(rate);
-        let counted = run_job(image, header, pieces, 1.0, |_| {})?;
+        let counted = run_job(image, steps, header, pieces, 1.0, |_| {})?;
         stack = stack.max(counted.seen.handler_stack);
         let ticks = &counted.seen.ticks;
         let whole = |median, most| BTreeMap::from([("median".to_owned(), median), ("most".to_owned(), most)]);
@@ -96,9 +97,7 @@ pub fn measure_steps(
         let rest = &counted.seen.resting;
         rows.insert("steps at rest".to_owned(), BTreeMap::from([("median".to_owned(), median(rest.iter().copied()))]));
     }
-    let sizes = image.sizes();
-    let bytes = [("stack bytes", stack + EXCEPTION_FRAME), ("flash bytes", sizes.flash), ("ram bytes", sizes.ram)];
-    rows.insert("steps image".to_owned(), bytes.map(|(name, bytes)| (name.to_owned(), bytes)).into());
+    rows.insert("steps stack bytes".to_owned(), BTreeMap::from([("most".to_owned(), stack + EXCEPTION_FRAME)]));
     Ok(rows)
 }
 

@@ -14,6 +14,9 @@ pub const TICK_HANDLER: &str = "TIM2";
 /// Where the tick leaves its results; see `firmware/src/mailbox.rs`.
 pub const MAILBOX: &str = "HODOGRAPH_MAILBOX";
 
+/// Where the program looks for a machine that it was sent before a restart; see `firmware/src/restart.rs`.
+pub const PENDING: &str = "HODOGRAPH_PENDING";
+
 /// A function of the image.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Function {

@@ -4,6 +4,7 @@ use shared::active::ActivePiece;
 use shared::complex::Complex;
 use shared::feed::Ramp;
 use shared::fixed::{Fixed, round_point};
+use shared::further::Travel;
 use shared::pace::PaceLimits;
 use shared::piece::{Header, Order, Piece, Shape};
 
@@ -39,14 +40,7 @@ pub const ORDERS: [(Order, &str); 4] =
 /// Two pieces of about 20 mm at 50 mm/s, half a second each, with ramps at both ends, so that the path has a node; the weight is in
 /// the middle, so that no term of the feed law vanishes.
 pub fn job(kind: Kind, order: Order) -> (Header<f32>, Vec<Piece<f32>>) {
-    let header = Header {
-        weight: 0.5,
-        order,
-        closed: false,
-        tolerance: 1e-3,
-        rest: false,
-        pace: PaceLimits::USUAL,
-    };
+    let header = Header { weight: 0.5, order, closed: false, tolerance: 1e-3, rest: false, pace: PaceLimits::USUAL };
     let shape = match kind {
         Kind::Ph => Shape::Ph {
             preimage: [Complex::new(4.2, 0.3), Complex::new(-0.4, 1.1), Complex::new(0.2, -0.3)],
@@ -57,16 +51,8 @@ pub fn job(kind: Kind, order: Order) -> (Header<f32>, Vec<Piece<f32>>) {
     };
     let ramp = Some(Ramp { length: 0.25, factor: 0.25 });
     let origin = round_point(Complex::new(30.0, 20.0));
-    let first = Piece {
-        origin,
-        shape,
-        interval: [0.0, 1.0],
-        feed: 50.0,
-        start: ramp,
-        end: ramp,
-        further: None,
-        last: None,
-    };
+    let first =
+        Piece { origin, shape, interval: [0.0, 1.0], feed: 50.0, start: ramp, end: ramp, further: None, last: None };
     twice(header, first)
 }
 
@@ -78,14 +64,17 @@ fn twice(header: Header<f32>, first: Piece<f32>) -> (Header<f32>, Vec<Piece<f32>
     let way = |axis: usize| ends[1][axis].0 - ends[0][axis].0;
     let moved = |from: [Fixed; 2]| [Fixed(from[0].0 + way(0)), Fixed(from[1].0 + way(1))];
     let [x, y] = moved(ends[1]);
-    let second = Piece { origin: moved(origin), last: Some([x, y, Fixed(0)]), ..first };
+    let on = |travel: Travel| Travel { from: travel.to, to: [Fixed(2 * travel.to[0].0 - travel.from[0].0)] };
+    let further = first.further.map(on);
+    let z = further.map_or(Fixed(0), |travel| travel.to[0]);
+    let second = Piece { origin: moved(origin), further, last: Some([x, y, z]), ..first };
     (header, vec![first, second])
 }
 
-/// The speed of each of x and y at which a step axis of the firmware makes one step a second, in mm/s; see `firmware/src/axes/steps.rs`.
+/// The speed of each of x and y at which a step axis of the firmware makes one step a second, in mm/s; see `examples/mill-steps.toml`.
 const MM_PER_STEP: f64 = 1.0 / 8_000.0;
 
-/// Two offset PH pieces that go along the diagonal, within three degrees of it, at full speed from the first tick: x and y make
+/// Two offset PH pieces that go along the diagonal, within three degrees of it, at full speed from the first tick: x, y and z make
 /// `steps_per_s` each, for about a quarter of a second.
 pub fn diagonal(steps_per_s: f64) -> (Header<f32>, Vec<Piece<f32>>) {
     let header = Header {
@@ -111,7 +100,7 @@ pub fn diagonal(steps_per_s: f64) -> (Header<f32>, Vec<Piece<f32>>) {
         feed: feed as f32,
         start: None,
         end: None,
-        further: None,
+        further: Some(Travel { from: [Fixed(0)], to: [Fixed::from_mm(steps_per_s * MM_PER_STEP / 8.0)] }),
         last: None,
     };
     twice(header, first)

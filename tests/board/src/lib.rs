@@ -6,6 +6,7 @@
 //! | module | what |
 //! | --- | --- |
 //! | [`image`] | the linked image: symbols, code, the interrupt's first instruction and its ends, every call |
+//! | [`mounting`] | the machine that the board is told, and the switches at its inputs |
 //! | [`line`](mod@line) | the far end of the serial line: whoever speaks to the controller |
 //! | [`pins`] | step drives at the pins, slot by slot |
 //! | [`probe`] | counts instructions of each tick, reads its setpoint in RAM, measures its stack |
@@ -24,6 +25,7 @@ pub mod budget;
 pub mod image;
 pub mod jobs;
 pub mod line;
+pub mod mounting;
 pub mod pins;
 pub mod probe;
 pub mod reach;

@@ -8,7 +8,7 @@ use rigless::chip::Timeline;
 use rigless::chip::uart::Peer;
 use rigless::snapshot::Store;
 use rigless::time::VirtualNanos;
-use shared::link::{Decoder, Event, Received, Report, Sender, SenderError, Telemetry};
+use shared::link::{Decoder, Ending, Event, Received, Report, Sender, SenderError, Telemetry};
 use shared::piece::{Header, Piece};
 
 /// The controller has its receiver on by then; what comes before is lost, as on a bench.
@@ -81,6 +81,8 @@ pub struct JobTalker {
     sender: Sender<'static>,
     /// What the controller reported at the end: ticks, residual time in s, hash of the setpoints.
     pub finished: Option<(u32, f32, u64)>,
+    /// How it ended otherwise.
+    pub ended: Option<Ending>,
     /// The last telemetry.
     pub telemetry: Option<Telemetry>,
 }
@@ -89,7 +91,7 @@ impl JobTalker {
     /// A talker with this job. The job is kept for the life of the process: the sender borrows it, and there are few.
     pub fn new(header: Header<f32>, pieces: Vec<Piece<f32>>) -> Self {
         let sender = Sender::new(SESSION, Box::leak(Box::new(header)), pieces.leak());
-        Self { sender, finished: None, telemetry: None }
+        Self { sender, finished: None, ended: None, telemetry: None }
     }
 
     /// Why the job was not taken, if it was not.
@@ -108,7 +110,8 @@ impl Talker for JobTalker {
         match self.sender.receive(now_us, byte) {
             Some(Event::Finished { ticks, residual, hash }) => self.finished = Some((ticks, residual, hash)),
             Some(Event::Telemetry(telemetry)) => self.telemetry = Some(telemetry),
-            Some(Event::Hello(_) | Event::Failed(_) | Event::Ended(_) | Event::Done(..)) | None => {}
+            Some(Event::Ended(ending)) => self.ended = Some(ending),
+            Some(Event::Hello(_) | Event::Failed(_) | Event::Done(..)) | None => {}
         }
     }
 
@@ -117,7 +120,7 @@ impl Talker for JobTalker {
     }
 
     fn is_done(&self) -> bool {
-        self.sender.is_finished() || self.sender.error().is_some()
+        self.sender.is_finished() || self.ended.is_some() || self.sender.error().is_some()
     }
 }
 

@@ -9,8 +9,8 @@ use std::process::ExitCode;
 use board::Error;
 use board::budget::{measure, measure_steps, median};
 use board::image::Image;
+use board::mounting::Mounting;
 use board::probe::{EXCEPTION_FRAME, Tick};
-use board::reach::Reach;
 use board::run::run_job;
 use clap::{Args, Parser, Subcommand};
 use serde::Serialize;
@@ -35,6 +35,9 @@ struct Run {
     /// The image
     #[arg(long, value_name = "ELF")]
     elf: PathBuf,
+    /// The machine that the board is told
+    #[arg(long, value_name = "MACHINE.toml")]
+    machine: String,
     /// What `hodograph prepare` wrote
     job: PathBuf,
     /// Write the result as JSON; `-` is standard output
@@ -51,9 +54,12 @@ struct Budget {
     /// The image
     #[arg(long, value_name = "ELF")]
     elf: PathBuf,
-    /// The image with three step axes, two of them on x
-    #[arg(long, value_name = "ELF")]
-    tandem: Option<PathBuf>,
+    /// A machine of servo axes
+    #[arg(long, value_name = "MACHINE.toml")]
+    servos: String,
+    /// A machine of three step axes
+    #[arg(long, value_name = "MACHINE.toml")]
+    steps: String,
 }
 
 /// The result of `run`.
@@ -97,7 +103,7 @@ impl Run {
         let (header, pieces): (Header<f32>, Vec<Piece<f32>>) =
             postcard::from_bytes(&bytes).map_err(|error| failed(&self.job, &error))?;
         let seconds = board::jobs::expected_seconds(&header, &pieces);
-        let run = run_job(&image, header, pieces, seconds, |_| {})?;
+        let run = run_job(&image, &mounting(&self.machine)?, header, pieces, seconds, |_| {})?;
         if let Some(path) = &self.setpoints {
             write_setpoints(path, &run.seen.ticks).map_err(|error| failed(path, &error))?;
         }
@@ -136,14 +142,8 @@ impl Budget {
     fn run(self) -> Result<(), Error> {
         let image = Image::read(&self.elf)?;
         let progress = |name: &str| eprintln!("  measuring {name}");
-        let mut budget = measure(&image, progress)?;
-        if let Some(tandem) = &self.tandem {
-            let tandem = Image::read(tandem)?;
-            budget.instructions.extend(measure_steps(&tandem, progress)?);
-            let reach = Reach::of_tick(&tandem)?;
-            budget.forbidden.extend(reach.forbidden().into_iter().map(str::to_owned));
-            budget.indirect.extend(reach.indirect.iter().map(|(name, address)| format!("{name} at {address:#010x}")));
-        }
+        let mut budget = measure(&image, &mounting(&self.servos)?, progress)?;
+        budget.instructions.extend(measure_steps(&image, &mounting(&self.steps)?, progress)?);
         print_json(&budget)
     }
 }
@@ -177,6 +177,11 @@ fn write_setpoints(path: &Path, ticks: &[Tick]) -> std::io::Result<()> {
     let mut out = BufWriter::new(File::create(path)?);
     out.write_all(board::run::setpoints_csv(ticks).as_bytes())?;
     out.flush()
+}
+
+/// The machine of a file.
+fn mounting(name: &str) -> Result<Mounting, Error> {
+    Mounting::new(&host_sim::machine::read(name).map_err(|error| Error::new(error.to_string()))?)
 }
 
 fn failed(path: &Path, error: &dyn std::fmt::Display) -> Error {

@@ -2,17 +2,13 @@
 //!
 //! The wiring is told here once more, so that a firmware that uses other pins moves nothing.
 
-use rigless::device::Level;
+use crate::mounting::{ENABLES, is_high};
 use rigless::machine::stm32h743_bench::Stm32h743Bench;
-use rigless::soc::stm32h743::peripherals::gpio::Pin;
 use rigless::time::VirtualNanos;
 use shared::steps::receiver::{Least, Receiver};
 
 /// Number of port D among the ports.
 const PORT_D: usize = 3;
-
-/// Number of port E, and the bit of the drives' enable output there.
-const ENABLE: (usize, u8) = (4, 2);
 
 /// Step and direction of x, y and z.
 const PINS: [[u8; 2]; 3] = [[3, 4], [5, 6], [7, 0]];
@@ -32,7 +28,7 @@ pub struct Pins {
     drives: [Receiver; 3],
     /// Every step.
     pub steps: Vec<Step>,
-    /// Every look at which the enable output was another than at the one before: the slot and the level.
+    /// Every look at which the enable output of x was another than at the one before: the slot and the level.
     pub enabled: Vec<(u64, bool)>,
 }
 
@@ -55,17 +51,13 @@ impl Pins {
         if now < self.next() {
             return Some(self.next());
         }
-        let mut is_high = |port: usize, bit: u8| {
-            board.mcu.drive_port(now, port, |gpio, registers, _| {
-                Pin::new(bit).is_some_and(|pin| gpio.level(pin, registers) == Level::High)
-            })
-        };
+        let mut is_high = |port: usize, bit: u8| is_high(board, now, (port, bit));
         for (axis, (drive, [step, direction])) in self.drives.iter_mut().zip(PINS).enumerate() {
             if let Some(forward) = drive.see(self.slot, is_high(PORT_D, step), is_high(PORT_D, direction)) {
                 self.steps.push((axis, self.slot, forward));
             }
         }
-        let enabled = is_high(ENABLE.0, ENABLE.1);
+        let enabled = is_high(ENABLES[0].0, ENABLES[0].1);
         if self.enabled.last().is_none_or(|(_, before)| *before != enabled) {
             self.enabled.push((self.slot, enabled));
         }

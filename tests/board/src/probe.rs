@@ -3,17 +3,16 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
-use rigless::device::Level;
 use rigless::emulator::{AccessKind, Driver, Hit, Host, Settled, Stop, Watch};
 use rigless::machine::stm32h743_bench::Stm32h743Bench;
 use rigless::session::Session;
 use rigless::soc::Width;
-use rigless::soc::stm32h743::peripherals::gpio::Pin;
 use rigless::time::VirtualNanos;
 
 use crate::Error;
 use crate::image::{Image, Instruction, MAILBOX};
 use crate::line::{Shared, Talker, lock};
+use crate::mounting::{BUTTON, drive};
 use crate::pins::Pins;
 
 /// How often the run is looked at from outside, in virtual nanoseconds.
@@ -31,12 +30,12 @@ const KEPT_ENTRIES: usize = 4_096;
 /// The first control register of TIM8, whose update plays a word; RM0433 rev 9 section 2.3.
 const SLOT_TIMER: u64 = 0x4001_0400;
 
-/// The set/reset register of port E, and the word that switches the drives off there.
-const ENABLE_PORT: u64 = 0x5802_1018;
-const DISABLE: u64 = 1 << 18;
+/// TIM15's break and dead-time register, and the bit that gives the drives power.
+const ENABLES: u64 = 0x4001_4044;
+const ON: u64 = 1 << 15;
 
-/// The stop input: number of its port, and bit.
-const STOP: (usize, u8) = (2, 13);
+/// Where in the mailbox the axes' commands are.
+const TOLD: u64 = 10;
 
 const PAINT: u64 = 0xa5a5_5a5a;
 
@@ -111,7 +110,7 @@ pub struct Probe {
     last_ticks: u32,
     /// Whether the pins are looked at, slot by slot.
     looks: bool,
-    /// When the stop input is pressed, in ns after the job's first tick.
+    /// When the button is pressed, in ns after the job's first tick.
     press_after: Option<u64>,
     /// When it is pressed, in ns.
     press_at: Option<u64>,
@@ -155,7 +154,7 @@ impl Probe {
         self.looks = true;
     }
 
-    /// Presses the stop input so many nanoseconds after the job's first tick, and holds it.
+    /// Presses the button so many nanoseconds after the job's first tick, and holds it.
     pub fn press_stop_after(&mut self, nanoseconds: u64) {
         self.press_after = Some(nanoseconds);
     }
@@ -261,7 +260,7 @@ impl Driver<Stm32h743Bench> for Probe {
                     let first = self.seen.pins.start(access.virtual_time);
                     session.run_until(first);
                 }
-                if access.address == ENABLE_PORT && access.value == DISABLE {
+                if access.address == ENABLES && access.value & ON == 0 {
                     self.seen.disabled = Some(access.virtual_time.0);
                 }
             }
@@ -273,11 +272,7 @@ impl Driver<Stm32h743Bench> for Probe {
         if self.press_at.is_some_and(|at| stop.at.0 >= at) {
             self.press_at = None;
             self.seen.pressed = Some(stop.at.0);
-            session.board_mut().mcu.drive_port(stop.at, STOP.0, |gpio, registers, context| {
-                if let Some(pin) = Pin::new(STOP.1) {
-                    gpio.drive(pin, Some(Level::High), registers, context);
-                }
-            });
+            drive(session.board_mut(), stop.at, BUTTON, true);
         }
         let look = if self.looks { self.seen.pins.look(session.board_mut(), stop.at) } else { None };
         let is_over = stop.at >= self.deadline || lock(&*self.talker).is_done();

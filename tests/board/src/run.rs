@@ -1,5 +1,7 @@
 //! One image, one conversation, until it ends.
 
+use std::path::Path;
+
 use rigless::emulator::{Start, run as emulate};
 use rigless::image::Image as Placed;
 use rigless::machine::stm32h743_bench::Stm32h743Bench;
@@ -9,12 +11,20 @@ use rigless::time::VirtualNanos;
 use shared::piece::{Header, Piece};
 
 use crate::Error;
-use crate::image::Image;
+use crate::image::{Image, PENDING};
 use crate::line::{JobTalker, Line, Shared, Talker, lock, share};
+use crate::mounting::Mounting;
 use crate::probe::{Probe, Seen, Tick};
 
 /// The port that the firmware's link uses: the ST-Link's.
 const PORT: &str = "USART3";
+
+/// Where the factory writes the size of the flash, and what that is in KiB; RM0433 rev 9 section 61.2.
+const FLASH_SIZE: u32 = 0x1ff1_e880;
+const FLASH_KIB: u16 = 2_048;
+
+/// Marks a machine that was sent before a restart; see `firmware/src/restart.rs`.
+const IMAGE_MARK: u32 = 0x4d41_4348;
 
 /// Virtual time that a job may take beyond what it was expected to.
 const PATIENCE_S: f64 = 30.0;
@@ -32,11 +42,12 @@ pub struct JobRun {
     pub stack: u32,
 }
 
-/// Runs `image` with `talker` at the far end of its line, until the talker is done or `seconds` of virtual time have passed.
+/// Runs `image` in its `mounting` with `talker` at the far end of its line, until the talker is done or `seconds` of virtual time have passed.
 ///
 /// `prepare` may ask the probe for more than it does by itself.
 pub fn run(
     image: &Image,
+    mounting: &Mounting,
     talker: Shared<dyn Talker>,
     seconds: f64,
     prepare: impl FnOnce(&mut Probe),
@@ -48,10 +59,19 @@ pub fn run(
     bench.mcu.usart[nth].attach(Line::new(talker.clone()));
 
     let mut session = Session::new(Box::new(bench), 0, VirtualNanos(0)).map_err(|error| failed(&error))?;
+    mounting.power_up(session.board_mut());
     let mut probe = Probe::new(image, talker, seconds)?;
     prepare(&mut probe);
     probe.watch(&mut session);
-    let images = [Placed::read(image.path(), None).map_err(|error| failed(&error))?];
+    let place = |name: &str, bytes: Vec<u8>, at: u32| {
+        Placed::new(Path::new(name), bytes, Some(at.into())).map_err(|error| failed(&error))
+    };
+    let mut images = vec![Placed::read(image.path(), None).map_err(|error| failed(&error))?];
+    images.push(place("factory", FLASH_KIB.to_le_bytes().to_vec(), FLASH_SIZE)?);
+    if !mounting.machine.is_empty() {
+        let words = [IMAGE_MARK, 0].iter().flat_map(|word| word.to_le_bytes());
+        images.push(place("machine", words.chain(mounting.machine.iter().copied()).collect(), image.symbol(PENDING)?)?);
+    }
     let mut finished = emulate(session, &Start::new(&images), probe).map_err(|error| failed(&error))?;
     if let Some(error) = finished.session.take_error() {
         return Err(failed(&error));
@@ -65,19 +85,23 @@ pub fn run(
     Ok(finished.driver.seen)
 }
 
-/// Sends a job to `image` and waits for its end. `seconds` is how long it should take.
+/// Sends a job to `image` in its `mounting` and waits for its end. `seconds` is how long it should take.
 pub fn run_job(
     image: &Image,
+    mounting: &Mounting,
     header: Header<f32>,
     pieces: Vec<Piece<f32>>,
     seconds: f64,
     prepare: impl FnOnce(&mut Probe),
 ) -> Result<JobRun, Error> {
     let talker = share(JobTalker::new(header, pieces));
-    let seen = run(image, talker.clone(), seconds + PATIENCE_S, prepare)?;
+    let seen = run(image, mounting, talker.clone(), seconds + PATIENCE_S, prepare)?;
     let talker = lock(&talker);
     if let Some(error) = talker.error() {
         return Err(Error::new(error.to_string()));
+    }
+    if let Some(ending) = talker.ended {
+        return Err(Error::new(ending.to_string()));
     }
     let Some(finished) = talker.finished else {
         return Err(Error::new(format!("the job did not end within {:.0} s of virtual time", seconds + PATIENCE_S)));

@@ -13,13 +13,15 @@ use crate::Error;
 use crate::image::Image;
 
 /// The stages of a tick, in the order in which a setpoint passes them.
-pub const STAGES: [(&str, &[&str]); 7] = [
+pub const STAGES: [(&str, &[&str]); 9] = [
     ("executor", &["shared/src/executor.rs", "shared/src/motion.rs", "shared/src/supply.rs"]),
     ("pace", &["shared/src/pace/mod.rs", "shared/src/pace/lattice.rs"]),
     ("interpolator", &["shared/src/interpolator.rs", "shared/src/accumulator.rs"]),
     ("feed law", &["shared/src/feed.rs"]),
     ("curve", &["shared/src/active.rs", "shared/src/active/ph.rs", "shared/src/further.rs"]),
     ("servo", &["shared/src/servo.rs"]),
+    ("safety", &["shared/src/safety/mod.rs", "shared/src/safety/table.rs", "shared/src/safety/debounce.rs"]),
+    ("control", &["shared/src/control/mod.rs", "shared/src/control/axes.rs"]),
     ("rest", &[]),
 ];
 

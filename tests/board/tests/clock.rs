@@ -4,7 +4,7 @@ mod common;
 
 use board::jobs::{Kind, job};
 use board::run::run_job;
-use common::image;
+use common::{image, servos};
 use shared::piece::Order;
 
 /// 2^-10 s is 976 562.5 ns: n ticks after the first, the handler is entered within one instruction of n times that, plus what the task
@@ -12,7 +12,7 @@ use shared::piece::Order;
 #[test]
 fn ticks_are_2_to_the_minus_10_s_apart() {
     let (header, pieces) = job(Kind::Line, Order::First);
-    let run = run_job(&image(), header, pieces, 1.0, |_| {}).unwrap();
+    let run = run_job(&image(), &servos(), header, pieces, 1.0, |_| {}).unwrap();
     let entries = &run.seen.entries;
     assert!(entries.len() > 500);
     for (n, &at) in entries.iter().enumerate() {

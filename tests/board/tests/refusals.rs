@@ -7,7 +7,7 @@ use board::jobs::{Kind, job};
 use board::line::{SESSION, Script, lock, share};
 use board::probe::Seen;
 use board::run::run;
-use common::image;
+use common::{image, servos};
 use shared::complex::Complex;
 use shared::error::PathError;
 use shared::feed::Ramp;
@@ -21,7 +21,7 @@ const GAP_US: u64 = 20_000;
 /// Says `lines` to the controller and returns what it answered and what it did.
 fn say(image: &Image, lines: Vec<Vec<u8>>) -> (Vec<Report>, Seen) {
     let script = share(Script::new(lines, GAP_US));
-    let seen = run(image, script.clone(), 5.0, |_| {}).unwrap();
+    let seen = run(image, &servos(), script.clone(), 5.0, |_| {}).unwrap();
     let reports = lock(&script).reports.clone();
     (reports, seen)
 }
@@ -182,7 +182,8 @@ fn faulty_frames_are_refused_and_forgotten() {
 #[test]
 fn a_start_without_a_job_and_another_version_are_refused() {
     let image = image();
-    let lines = vec![hello(), frame(1, &Command::Run), frame(0, &Command::Hello { version: VERSION + 1, session: SESSION })];
+    let lines =
+        vec![hello(), frame(1, &Command::Run), frame(0, &Command::Hello { version: VERSION + 1, session: SESSION })];
     let (reports, seen) = say(&image, lines);
     assert_eq!(refusals(&reports), [Refusal::NoJob, Refusal::Version { version: VERSION }]);
     assert!(!seen.moved);

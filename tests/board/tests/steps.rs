@@ -5,26 +5,18 @@ mod common;
 use board::jobs::diagonal;
 use board::pins::{SLOTS, Step};
 use board::run::run_job;
-use common::steps_image;
+use common::{image, machine, steps};
+use shared::control::{StepPins, step_settings};
 use shared::fixed::Fixed;
 use shared::piece::{Header, Piece};
 use shared::steps::decoder::Decoder;
-use shared::steps::{Half, Pin, StepSettings};
+use shared::steps::{Half, StepSettings};
 
-/// The axes as they are wired and set; `firmware/src/axes/steps.rs` is told the same.
+/// The axes as they are wired and set.
 fn settings() -> [StepSettings; 3] {
-    [[3, 4], [5, 6], [7, 0]].map(|[step, direction]: [u8; 2]| {
-        let pin = |bit| Pin { port: 0, bit, inverted: false };
-        StepSettings {
-            steps_per_mm: 8_000.0,
-            step: pin(step),
-            direction: pin(direction),
-            pulse: 1,
-            gap: 1,
-            setup: 10,
-            hold: 10,
-        }
-    })
+    let pins =
+        [[3, 4], [5, 6], [7, 0]].map(|[step, direction]| StepPins { step: (0, step), direction: (0, direction) });
+    step_settings(&machine("mill-steps.toml"), &pins, SLOTS as usize)
 }
 
 /// The words of these setpoints, from a rest at the first one's job start, decoded.
@@ -45,16 +37,17 @@ fn host(start: [Fixed; 3], setpoints: &[[i32; 3]]) -> Vec<Step> {
 
 fn compare((header, pieces): (Header<f32>, Vec<Piece<f32>>), ticks: usize) {
     let [x, y] = pieces[0].origin;
-    let run = run_job(&steps_image(), header, pieces.clone(), 1.0, |probe| probe.look_at_pins()).unwrap();
+    let run = run_job(&image(), &steps(), header, pieces.clone(), 1.0, |probe| probe.look_at_pins()).unwrap();
     let setpoints: Vec<_> = run.seen.ticks.iter().map(|tick| tick.setpoint).collect();
     assert!(setpoints.len() > ticks, "{}", setpoints.len());
-    // Where the firmware takes the machine to stand: at the path's first point, which the loader reports to the tick.
+    // The machine stands at 0 after its start, and the path begins there, whatever its own coordinates are.
     let start = shared::loader::Loader::new(&header, shared::TICK).and_then(|mut loader| {
         loader.load(&pieces[0])?;
         Ok(loader.start())
     });
     let [first_x, first_y] = start.unwrap().unwrap_or([x, y]);
-    let host = host([first_x, first_y, Fixed(0)], &setpoints);
+    let setpoints: Vec<_> = setpoints.iter().map(|[x, y, z]| [x - first_x.0, y - first_y.0, *z]).collect();
+    let host = host([Fixed(0); 3], &setpoints);
     let pins = &run.seen.pins.steps;
     assert!(host.len() > ticks && !pins.is_empty(), "{} {}", host.len(), pins.len());
     // One shift for all of them, of whole ticks: when the job was started.
@@ -64,13 +57,13 @@ fn compare((header, pieces): (Header<f32>, Vec<Piece<f32>>), ticks: usize) {
     assert_eq!(differs, None, "the first step that differs");
     // The last tick's words may still be on their way when the host hears that the job has ended.
     assert_eq!(host.len(), pins.len());
-    for axis in 0..2 {
+    for axis in 0..3 {
         let least = run.seen.pins.least(axis);
         assert!(least.pulse >= 1 && least.gap >= 1 && least.setup >= 10 && least.hold >= 10, "{axis}: {least:?}");
     }
 }
 
-/// Both axes near 900 000 steps/s, for a quarter of a second: the pins, the words and the drives' times.
+/// All axes near 900 000 steps/s, for a quarter of a second: the pins, the words and the drives' times.
 #[test]
 fn pulses_at_full_speed_are_the_simulators() {
     compare(diagonal(900_000.0), 200);
@@ -90,7 +83,7 @@ fn a_stop_ends_the_pulses_within_a_tick() {
         let (header, pieces) = diagonal(900_000.0);
         let mut seen = None;
         let talker = board::line::share(board::line::JobTalker::new(header, pieces));
-        let run = board::run::run(&steps_image(), talker, 0.12, |probe| {
+        let run = board::run::run(&image(), &steps(), talker, 0.12, |probe| {
             probe.look_at_pins();
             probe.press_stop_after(after);
         });

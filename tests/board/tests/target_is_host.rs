@@ -3,7 +3,7 @@
 mod common;
 
 use board::run::run_job;
-use common::{image, root};
+use common::{image, root, servos};
 use host_sim::job::{FeedOverride, Job, Reduction};
 use host_sim::path::Path;
 use host_sim::simulate;
@@ -14,7 +14,7 @@ fn compare(job: &Job, order: Order, name: &str) -> usize {
     let path = Path::new(job, order).unwrap();
     let mut host = Vec::new();
     let outcome = simulate::run(&path, |_, executor| host.push(executor.setpoint().map(|axis| axis.0))).unwrap();
-    let target = run_job(&image(), path.header, path.wire().collect(), outcome.time, |_| {}).unwrap();
+    let target = run_job(&image(), &servos(), path.header, path.wire().collect(), outcome.time, |_| {}).unwrap();
 
     let found: Vec<_> = target.seen.ticks.iter().map(|tick| tick.setpoint).collect();
     let first = host.iter().zip(&found).position(|(host, target)| host != target);

@@ -3,22 +3,36 @@
 use std::path::{Path, PathBuf};
 
 use board::image::Image;
+use board::mounting::Mounting;
+use shared::machine::MachineSettings;
 
 /// The top-level directory.
 pub fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
 }
 
-/// The image with servo axes, as `cargo xtask build` left it.
+/// The image, as `cargo xtask build` left it.
 #[allow(dead_code, reason = "each file of tests has a copy of this module, and not all need it")]
 pub fn image() -> Image {
-    built("firmware-servos")
+    built("firmware")
 }
 
-/// The image with step axes.
+/// A machine of two servo axes.
 #[allow(dead_code, reason = "each file of tests has a copy of this module, and not all need it")]
-pub fn steps_image() -> Image {
-    built("firmware-steps")
+pub fn servos() -> Mounting {
+    Mounting::new(&machine("mill-servos.toml")).unwrap()
+}
+
+/// A machine of three step axes.
+#[allow(dead_code, reason = "each file of tests has a copy of this module, and not all need it")]
+pub fn steps() -> Mounting {
+    Mounting::new(&machine("mill-steps.toml")).unwrap()
+}
+
+/// A machine among the examples.
+#[allow(dead_code, reason = "each file of tests has a copy of this module, and not all need it")]
+pub fn machine(name: &str) -> MachineSettings {
+    host_sim::machine::read(root().join("examples").join(name).to_str().unwrap()).unwrap()
 }
 
 fn built(name: &str) -> Image {
