@@ -368,6 +368,14 @@ impl<T: Real> Servo<T> {
         command
     }
 
+    /// Takes the setpoint of an axis that was just sensed to be `position` from now on. How far the axis is from it stays as it is, so that
+    /// nothing jumps. The setpoint rests, as it did before.
+    pub fn stand_at(&self, state: &mut ServoState<T>, position: Fixed) {
+        let error = state.error;
+        *state = self.at_rest(position.offset_by(-error), state.encoder);
+        (state.target, state.error) = (position, error);
+    }
+
     /// Instead of the second half, for a drive without power: the axis is taken to rest where its encoder is, which is returned. The encoder
     /// goes on counting from the same zero.
     #[inline(always)]

@@ -10,6 +10,7 @@
 //! For the link: [`noisy_line`] loses, doubles, reorders, damages and cuts frames.
 #![forbid(unsafe_code)]
 
+pub mod bench;
 pub mod chain;
 pub mod contours;
 pub mod draft;

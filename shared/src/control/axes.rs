@@ -79,7 +79,6 @@ pub struct Axes<const AXES: usize, const PORTS: usize, const SLOTS: usize> {
     coordinates: [Option<u8>; AXES],
     /// Where each axis shall be now.
     targets: [Fixed; AXES],
-    counts: [i32; AXES],
 }
 
 /// What the drives get in a tick.
@@ -146,7 +145,7 @@ impl<const AXES: usize, const PORTS: usize, const SLOTS: usize> Axes<AXES, PORTS
         }
         let steps = StepSettings::activate(&settings).map_err(AxesError::Steps)?;
         let step_state = steps.at_rest([Fixed(0); AXES]);
-        Ok(Self { servos, steps, step_state, has_steps, coordinates, targets: [Fixed(0); AXES], counts: [0; AXES] })
+        Ok(Self { servos, steps, step_state, has_steps, coordinates, targets: [Fixed(0); AXES] })
     }
 
     /// Whether there are step axes.
@@ -164,14 +163,11 @@ impl<const AXES: usize, const PORTS: usize, const SLOTS: usize> Axes<AXES, PORTS
     /// Takes over what the encoders read. Errors: the first axis that is too far from where it shall be now.
     #[inline(always)]
     pub fn sense(&mut self, counts: [i32; AXES]) -> Result<(), Fault> {
-        self.counts = counts;
         let mut found = Ok(());
-        for (number, (servo, count)) in (0..).zip(self.servos.iter_mut().zip(&mut self.counts)) {
+        for (number, (servo, count)) in (0..).zip(self.servos.iter_mut().zip(counts)) {
             let Some(axis) = servo else { continue };
-            if axis.encoder_inverted {
-                *count = count.wrapping_neg();
-            }
-            let error = axis.servo.sense(&mut axis.state, *count);
+            let count = if axis.encoder_inverted { count.wrapping_neg() } else { count };
+            let error = axis.servo.sense(&mut axis.state, count);
             // Written so that no NaN passes.
             axis.seen = axis.state.target().offset_by(-error);
             let follows = error <= axis.following_error && error >= -axis.following_error;
@@ -188,8 +184,7 @@ impl<const AXES: usize, const PORTS: usize, const SLOTS: usize> Axes<AXES, PORTS
         *target = position;
         match self.servos.get_mut(number) {
             Some(Some(axis)) => {
-                let count = self.counts.get(number).copied().unwrap_or(0);
-                axis.state = axis.servo.at_rest(position, count);
+                axis.servo.stand_at(&mut axis.state, position);
             }
             _ => self.steps.stand_at(&mut self.step_state, self.targets),
         }

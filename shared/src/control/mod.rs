@@ -223,8 +223,11 @@ impl<const AXES: usize, const PORTS: usize, const SLOTS: usize> Control<AXES, PO
         let Directive::Start(Start { coordinates: Coordinates::Machine, at: [x, y], further, .. }) = directive else {
             return None;
         };
-        let here = self.here();
-        let [hx, hy, hz] = here;
+        if self.safety.start_refusal(&self.config, Coordinates::Machine).is_some() {
+            // It is refused for that.
+            return None;
+        }
+        let [hx, hy, hz] = self.here();
         let z = further.map_or(hz, |[z]| z);
         let slack = (AWAY_MM * UNITS_PER_MM) as u32;
         (0..).zip([(hx, *x), (hy, *y), (hz, z)]).find_map(|(axis, (here, at))| {

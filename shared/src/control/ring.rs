@@ -9,7 +9,7 @@ pub trait Ring<const PORTS: usize, const SLOTS: usize> {
     fn is_played(&self) -> bool;
 
     /// Plays it from the start of the first half on, full of words that change nothing, with the pins at the levels of `idle`. The next
-    /// tick fills the second half.
+    /// tick comes with the start of the second half, and fills the first one.
     fn play(&mut self, idle: [u32; PORTS]);
 
     /// Plays no word from here on.

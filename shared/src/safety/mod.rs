@@ -308,7 +308,7 @@ impl Safety {
     }
 
     /// Why a job could not be started now.
-    fn start_refusal(&self, config: &SafetyConfig, coordinates: Coordinates) -> Option<Refused> {
+    pub(crate) fn start_refusal(&self, config: &SafetyConfig, coordinates: Coordinates) -> Option<Refused> {
         if !self.state.takes_jobs() {
             return Some(Refused::State { state: self.state });
         }
