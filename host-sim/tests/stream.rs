@@ -91,3 +91,31 @@ fn what_cannot_be_is_said_in_one_sentence() {
         assert!(errors.contains(said) && errors.trim_end().lines().count() == 1, "{port}: {errors}");
     }
 }
+
+/// After a fault nothing runs before somebody has taken notice; then the job does.
+#[test]
+fn a_fault_is_acknowledged_from_the_command_line() {
+    let port = controller(3, 3);
+    let refused = hodograph(&["stream", "JOB", "--port", &port]);
+    assert_eq!(refused.status.code(), Some(1));
+    let asked = hodograph(&["monitor", "--port", &port, "--act", "acknowledge", "--act", "override=150"]);
+    assert!(asked.status.success(), "{}", String::from_utf8_lossy(&asked.stderr));
+    assert_eq!(String::from_utf8(asked.stdout).unwrap(), "acknowledge: done\noverride=150: done\n");
+    json(&hodograph(&["stream", "JOB", "--port", &port, "--json", "-"]));
+}
+
+/// The first refusal ends a row of actions, in one sentence with status 1; what is no action never reaches the controller.
+#[test]
+fn a_refused_action_ends_the_row() {
+    let port = controller(1, 0);
+    let output =
+        hodograph(&["monitor", "--port", &port, "--act", "override=90", "--act", "hold", "--act", "acknowledge"]);
+    let errors = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(1), "{errors}");
+    assert_eq!(String::from_utf8(output.stdout).unwrap(), "override=90: done\n");
+    assert!(errors.contains("hold was refused: nothing is in motion") && errors.trim_end().lines().count() == 1);
+    for action in ["override=0", "jump"] {
+        let output = hodograph(&["monitor", "--port", "tcp:nowhere", "--act", action]);
+        assert_eq!(output.status.code(), Some(2));
+    }
+}

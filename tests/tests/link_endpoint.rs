@@ -81,6 +81,42 @@ fn a_host_that_vanishes_leaves_what_was_configured() {
     }
 }
 
+/// A host that is heard keeps its job to itself. One that has vanished leaves it to the next, which may go on with it, and begins a job
+/// of its own only then.
+#[test]
+fn a_motion_without_a_host_is_left_to_the_next_one() {
+    let mut controller = running(Settings { alone: Alone::Brake, ..Settings::default() });
+    let ask = |controller: &mut Controller, session: u32, sequence: u16, command: &Command| {
+        controller.take_output();
+        let session_of = if matches!(command, Command::Hello { .. }) { NO_SESSION } else { session };
+        controller.receive(&encode(session_of, sequence, command).unwrap());
+        let mut decoder = Decoder::new();
+        decoder.enter(session);
+        let said = |found: Result<Received<Report>, _>| found.unwrap().message;
+        controller.take_output().into_iter().filter_map(|byte| decoder.push(byte)).map(said).last()
+    };
+    let hello = Command::Hello { version: VERSION, session: SESSION + 1 };
+    pass(&mut controller, 100);
+    let refused = Some(Report::Refused { sequence: 0, reason: Refusal::Busy });
+    assert_eq!(ask(&mut controller, SESSION + 1, 0, &hello), refused);
+    pass(&mut controller, 2_500);
+    assert_eq!(controller.state(), State::Held);
+    assert!(matches!(ask(&mut controller, SESSION + 1, 0, &hello), Some(Report::Hello { .. })));
+    assert_eq!(controller.state(), State::Held);
+    let begin = Command::Begin(HEADER);
+    let busy = Some(Report::Refused { sequence: 1, reason: Refusal::Busy });
+    assert_eq!(ask(&mut controller, SESSION + 1, 1, &begin), busy);
+    let resume = Command::Act(Action::Motion(MotionCommand::Resume));
+    let done = Some(Report::Done { number: 0, outcome: Ok(Answer::Done) });
+    assert_eq!(ask(&mut controller, SESSION + 1, 0, &resume), done);
+    for _ in 0..10 {
+        pass(&mut controller, 200);
+        ask(&mut controller, SESSION + 1, 2, &Command::Status);
+    }
+    assert_eq!(controller.state(), State::Finished);
+    assert!(matches!(ask(&mut controller, SESSION + 1, 2, &begin), Some(Report::Ack { next: 3, .. })));
+}
+
 /// A late copy of a hold, a resume or the hello itself changes nothing.
 #[test]
 fn nothing_is_done_twice() {

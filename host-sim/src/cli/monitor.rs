@@ -1,18 +1,27 @@
-//! `hodograph monitor`: what a controller is doing.
+//! `hodograph monitor`: what a controller is doing, and actions beside a job.
 
+use std::cell::RefCell;
 use std::time::Duration;
 
 use clap::Args;
-use host_sim::stream::{StreamError, monitor};
-use host_sim::transport;
+use host_sim::monitor::{Sight, Want, monitor};
+use host_sim::session::Session;
+use host_sim::transport::{self, Transport};
 use serde::Serialize;
 use shared::link::Telemetry;
 
 use super::Failure;
+use super::act::{Act, carry_out, refused};
+use super::keys::{Keys, Press};
 
-/// Show what a controller is doing, without disturbing it
+/// Show what a controller is doing, without disturbing it; or ask it for something
+///
+/// On a terminal: h or space holds, r or space resumes, + and - change the override by 10 %, b runs piece by piece or not, c cancels, g
+/// homes, a acknowledges a fault, q ends the look
 #[derive(Args)]
-#[command(after_help = "Example:\n  hodograph monitor --port tcp:localhost:4750 --json")]
+#[command(after_help = "Examples:
+  hodograph monitor --port tcp:localhost:4750 --json
+  hodograph monitor --port tcp:localhost:4750 --act acknowledge --act home")]
 pub struct Monitor {
     /// The controller: a serial port, a file that is a line, or `tcp:HOST:PORT`
     #[arg(long)]
@@ -29,6 +38,10 @@ pub struct Monitor {
     /// Ask so often, in ms
     #[arg(long, value_name = "MS", default_value_t = 100)]
     every: u64,
+    /// Ask for this and end when it is done; again and again for one after another: hold, resume, cancel, override=PERCENT,
+    /// single-block=on, single-block=off, home, acknowledge
+    #[arg(long, value_name = "ACTION", conflicts_with_all = ["json", "count", "every"])]
+    act: Vec<Act>,
 }
 
 /// A report as JSON; lengths in mm.
@@ -80,12 +93,42 @@ pub fn status(telemetry: &Telemetry) -> String {
 }
 
 impl Monitor {
-    /// Looks on until there is nothing to see.
+    /// Looks on until there is nothing to see, or acts.
     pub fn run(self) -> Result<(), Failure> {
         let mut line = transport::open(&self.port, self.baud)?;
+        let outcome = if self.act.is_empty() { self.look_on(&mut *line) } else { self.act(&mut *line) };
+        outcome.map_err(|error| Failure::Run(format!("{}: {error}", self.port)))
+    }
+
+    fn act(&self, line: &mut dyn Transport) -> Result<(), String> {
+        let mut session = Session::open(line).map_err(|error| error.to_string())?;
+        carry_out(&mut session, &self.act, |name| println!("{name}: done"))
+    }
+
+    fn look_on(&self, line: &mut dyn Transport) -> Result<(), String> {
         let mut left = self.count;
         let bar = (!self.json).then(|| super::spinner("waiting for the controller"));
-        let look = |telemetry: &Telemetry| {
+        // One closure shows what the controller says, the other reads keys, which go on from it.
+        let keys = RefCell::new(if self.json { Keys::none() } else { Keys::new() });
+        let tell = |text: &str| match &bar {
+            Some(bar) => bar.suspend(|| eprintln!("{text}\r")),
+            None => eprintln!("{text}"),
+        };
+        let look = |sight: Sight<'_>| {
+            let telemetry = match sight {
+                Sight::Telemetry(telemetry) => telemetry,
+                Sight::Done(action, outcome) => {
+                    if let Err(reason) = outcome {
+                        tell(&refused(&action, &reason));
+                    }
+                    return true;
+                }
+                Sight::Refused(error) => {
+                    tell(&error.to_string());
+                    return true;
+                }
+            };
+            keys.borrow_mut().percent_is(telemetry.percent);
             match &bar {
                 Some(bar) => bar.set_message(status(telemetry)),
                 None => match serde_json::to_string(&Line::from(telemetry)) {
@@ -98,7 +141,11 @@ impl Monitor {
             }
             left != Some(0)
         };
-        let outcome = monitor(&mut *line, Duration::from_millis(self.every), look);
-        outcome.map_err(|error: StreamError| Failure::Run(format!("{}: {error}", self.port)))
+        let want = || match keys.borrow_mut().press() {
+            None => Want::Nothing,
+            Some(Press::Act(action)) => Want::Act(action),
+            Some(Press::Quit | Press::Interrupt) => Want::Leave,
+        };
+        monitor(line, Duration::from_millis(self.every), look, want).map_err(|error| error.to_string())
     }
 }

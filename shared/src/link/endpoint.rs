@@ -84,6 +84,8 @@ enum Job {
     Running(Loader<f32>),
     /// Started, and coming to rest because a piece of it was refused.
     Leaving,
+    /// Started by a host that has vanished, and left to another one: no more pieces come, and its end is nobody's. Actions go on.
+    Orphan,
     /// Over; said again to whoever asks.
     Ended(End),
 }
@@ -166,6 +168,9 @@ impl Endpoint {
             self.telemetry(machine, now, self.receiver.session());
             self.send(machine, &end.into());
         }
+        if matches!(self.job, Job::Orphan) && machine.end().is_some() {
+            self.job = Job::None;
+        }
         if let Job::Running(loader) = &self.job {
             // One acknowledgement for several pieces of new room: each is a frame that the line has to carry.
             let worth_telling = (machine.identity().capacity / 4).max(1);
@@ -177,7 +182,7 @@ impl Endpoint {
         if silent && !self.vanished {
             self.vanished = true;
             match self.job {
-                Job::Running(_) => machine.host_vanished(),
+                Job::Running(_) | Job::Orphan => machine.host_vanished(),
                 // What was loaded and never started belongs to nobody.
                 Job::Loading(_) => self.drop_job(machine),
                 Job::None | Job::Leaving | Job::Ended(_) => {}
@@ -198,9 +203,14 @@ impl Endpoint {
         let outcome = match &self.job {
             _ if version != VERSION => Err(Refusal::Version { version: VERSION }),
             _ if session == self.receiver.session() => Ok(()),
-            Job::Running(_) | Job::Leaving => Err(Refusal::Busy),
-            _ => {
-                self.drop_job(machine);
+            Job::Running(_) | Job::Leaving | Job::Orphan if !self.vanished => Err(Refusal::Busy),
+            job => {
+                // A motion whose host has vanished is left to the next one, to be resumed or cancelled.
+                if matches!(job, Job::Running(_) | Job::Leaving | Job::Orphan) {
+                    self.job = Job::Orphan;
+                } else {
+                    self.drop_job(machine);
+                }
                 self.receiver.open(session);
                 self.decoder.enter(session);
                 self.outcome = Ok(Answer::Done);
@@ -238,7 +248,7 @@ impl Endpoint {
                 machine.stop();
                 self.job = match self.job {
                     Job::Loading(_) | Job::Running(_) | Job::Leaving => Job::Ended(End::Early(Ending::Stopped)),
-                    Job::None => Job::None,
+                    Job::None | Job::Orphan => Job::None,
                     Job::Ended(end) => Job::Ended(end),
                 };
                 Ok(())
@@ -264,6 +274,7 @@ impl Endpoint {
     fn load(&mut self, machine: &mut impl Machine, piece: &Piece<f32>) -> Result<(), Refusal> {
         let loader = match &mut self.job {
             Job::None => return Err(Refusal::NoJob),
+            Job::Orphan => return Err(Refusal::Busy),
             // It ended while the piece was on its way, and that has been told.
             Job::Leaving | Job::Ended(_) => return Ok(()),
             Job::Loading(loader) | Job::Running(loader) => loader,
@@ -287,7 +298,7 @@ impl Endpoint {
                 self.job = job;
                 Ok(())
             }
-            job @ Job::Running(_) => {
+            job @ (Job::Running(_) | Job::Orphan) => {
                 self.job = job;
                 Err(Refusal::Busy)
             }
@@ -304,7 +315,7 @@ impl Endpoint {
         let mut leaves = || machine.act(Action::Motion(MotionCommand::Cancel)).is_ok();
         self.job = match &self.job {
             Job::Running(_) if leaves() => Job::Leaving,
-            Job::Loading(_) | Job::Running(_) | Job::Leaving => {
+            Job::Loading(_) | Job::Running(_) | Job::Leaving | Job::Orphan => {
                 machine.stop();
                 Job::None
             }

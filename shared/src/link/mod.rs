@@ -15,6 +15,8 @@
 //! The rules.
 //! - `Hello` opens a session, whose number is in the CRC of every frame: nothing that was said in another one is ever taken, and a late
 //!   copy of the `Hello` itself changes nothing. A session has one job at most.
+//! - While a host is heard whose job is in motion, no other session is opened. Once it has vanished, the motion is left to the next host,
+//!   which may resume, cancel or abort it, and begins no job of its own before.
 //! - The commands of a job carry a sequence number. The controller takes the next expected one only; a repeated one is acknowledged
 //!   and not executed; after a gap or a broken frame it says which one it expects, and the sender goes back to it. An
 //!   acknowledgement carries the room in the queue of pieces, and the sender never has more pieces in flight than that.

@@ -111,7 +111,7 @@ impl fmt::Display for SenderError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Refused { piece: Some(piece), reason } => write!(f, "the controller refused piece {piece}: {reason}"),
-            Self::Refused { piece: None, reason } => write!(f, "the controller refused the job: {reason}"),
+            Self::Refused { piece: None, reason } => reason.fmt(f),
             Self::Lost { reason: Some(reason) } => write!(f, "no frame came through in {TRIES} tries: {reason}"),
             Self::Lost { reason: None } => write!(f, "the controller does not answer; check the port and its power"),
         }
