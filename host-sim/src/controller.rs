@@ -32,11 +32,13 @@ pub struct Settings {
     pub capacity: u16,
     /// What a host that vanishes leaves.
     pub alone: Alone,
+    /// Whether it can keep a configuration image.
+    pub keeps_image: bool,
 }
 
 impl Default for Settings {
     fn default() -> Self {
-        Self { capacity: 63, alone: Alone::default() }
+        Self { capacity: 63, alone: Alone::default(), keeps_image: true }
     }
 }
 
@@ -257,6 +259,11 @@ impl Machine for Virtual {
             Action::Acknowledge => {
                 self.fault = 0;
                 Ok(Answer::Done)
+            }
+            Action::WriteImage { .. } | Action::CommitImage { .. } | Action::ReadImage { .. }
+                if !self.settings.keeps_image =>
+            {
+                Err(Refusal::Unsupported)
             }
             Action::WriteImage { offset, chunk } => self.put_aside(offset, &chunk),
             Action::CommitImage { length, crc } => self.commit(length, crc),

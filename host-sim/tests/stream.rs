@@ -1,4 +1,4 @@
-//! `hodograph stream` and `monitor` against a controller on a TCP port of this process.
+//! `hodograph stream`, `monitor` and `machine` against a controller on a TCP port of this process.
 #![allow(clippy::unwrap_used, missing_docs, reason = "a failed test says where")]
 
 use std::io::{ErrorKind, Read, Write};
@@ -10,10 +10,14 @@ use host_sim::controller::{Controller, Settings};
 
 /// A controller on a port of its own, which runs as fast as it can; it serves so many connections, one after another.
 fn controller(connections: usize, fault: u8) -> String {
+    controller_with(Settings::default(), connections, fault)
+}
+
+fn controller_with(settings: Settings, connections: usize, fault: u8) -> String {
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();
     let port = format!("tcp:{}", listener.local_addr().unwrap());
     thread::spawn(move || {
-        let mut controller = Controller::new(Settings::default());
+        let mut controller = Controller::new(settings);
         controller.set_fault(fault);
         for stream in listener.incoming().take(connections) {
             let mut stream = stream.unwrap();
@@ -118,4 +122,55 @@ fn a_refused_action_ends_the_row() {
         let output = hodograph(&["monitor", "--port", "tcp:nowhere", "--act", action]);
         assert_eq!(output.status.code(), Some(2));
     }
+}
+
+fn machine(port: &str, arguments: &[&str]) -> Output {
+    let router = concat!(env!("CARGO_MANIFEST_DIR"), "/../examples/machine.toml");
+    let arguments: Vec<&str> = arguments.iter().map(|&word| if word == "ROUTER" { router } else { word }).collect();
+    hodograph(&[&["machine", "--port", port], arguments.as_slice()].concat())
+}
+
+/// A machine's file goes to the controller and comes back as a file that says the same.
+#[test]
+fn a_machine_goes_there_and_back() {
+    let port = controller(3, 0);
+    let written = machine(&port, &["ROUTER", "--write"]);
+    let text = String::from_utf8(written.stdout).unwrap();
+    assert!(written.status.success(), "{}", String::from_utf8_lossy(&written.stderr));
+    assert!(text.starts_with("three-axis router: 3 axes") && text.ends_with("the controller keeps it\n"), "{text}");
+    let read = machine(&port, &["--read"]);
+    assert!(read.status.success(), "{}", String::from_utf8_lossy(&read.stderr));
+    let back = host_sim::machine::from_toml("back", &String::from_utf8(read.stdout).unwrap()).unwrap();
+    let sent = concat!(env!("CARGO_MANIFEST_DIR"), "/../examples/machine.toml");
+    assert_eq!(back, host_sim::machine::read(sent).unwrap());
+    let file = std::path::PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("router-read.toml");
+    let read = machine(&port, &["--read", "-o", file.to_str().unwrap()]);
+    assert!(read.status.success() && read.stdout.is_empty());
+    assert_eq!(host_sim::machine::read(file.to_str().unwrap()).unwrap(), back);
+}
+
+/// A controller that keeps no machine, one that refuses it, and one that is not there: one sentence each. A file that will not do
+/// never reaches it.
+#[test]
+fn a_machine_that_does_not_get_there_is_said_in_one_sentence() {
+    let empty = controller(1, 0);
+    let refusing = controller_with(Settings { keeps_image: false, ..Settings::default() }, 2, 0);
+    for (port, arguments, status, said) in [
+        (empty.as_str(), &["--read"][..], 1, "the controller keeps no machine"),
+        (&refusing, &["ROUTER", "--write"], 1, "the machine was refused: this controller cannot do that"),
+        (&refusing, &["--read"], 1, "the machine was refused: this controller cannot do that"),
+        ("tcp:nowhere", &["ROUTER", "--write"], 2, "cannot be opened"),
+        ("tcp:nowhere", &["no-such-file.toml", "--write"], 2, "no-such-file.toml: cannot be read"),
+    ] {
+        let output = machine(port, arguments);
+        let errors = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(status), "{port}: {errors}");
+        assert!(errors.contains(said) && errors.trim_end().lines().count() == 1, "{port}: {errors}");
+        assert!(output.stdout.is_empty());
+    }
+    // Both ways at a time, a port without a way, a way without a port: the options say so themselves.
+    for arguments in [&["ROUTER", "--read"][..], &["--read", "--write"], &["ROUTER"], &["--write"]] {
+        assert_eq!(machine("tcp:nowhere", arguments).status.code(), Some(2));
+    }
+    assert_eq!(hodograph(&["machine", "--read"]).status.code(), Some(2));
 }
