@@ -114,7 +114,11 @@ pub fn stream(
     mut look: impl FnMut(Happening),
     mut wish: impl FnMut() -> Option<Wish>,
 ) -> (Transfer, Result<(), StreamError>) {
-    let mut sender = Sender::new(new_session(), header, pieces);
+    let sender = Sender::new(new_session(), header, pieces);
+    let mut sender = match line.baud() {
+        Some(baud) => sender.at_baud(baud),
+        None => sender,
+    };
     let mut transfer = Transfer { pieces: pieces.len() as u32, ..Transfer::default() };
     let outcome = converse(line, &mut sender, &mut transfer, &mut look, &mut wish);
     transfer.sent = sender.sent();

@@ -25,6 +25,8 @@ pub const FRAME_SIZE: usize = cobs::max_encoding_length(BODY_SIZE) + 1;
 pub type Frame = Vec<u8, FRAME_SIZE>;
 
 const CRC_SIZE: usize = 4;
+// The sender counts the length of a frame in a byte.
+const _: () = assert!(FRAME_SIZE <= u8::MAX as usize);
 const CRC: Crc<u32> = Crc::<u32>::new(&CRC_32_ISO_HDLC);
 
 /// Why bytes are no frame.

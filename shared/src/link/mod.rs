@@ -11,6 +11,7 @@
 //! | [`receiver`] | the controller's half of the sequence: the next expected command and no other is taken |
 //! | [`endpoint`] | the controller's end: obeys commands through a [`Machine`], reports, and sees a host vanish |
 //! | [`sender`] | the host's end: a window of commands in flight, going back where one was lost |
+//! | [`event`] | what a host learns of its conversation |
 //!
 //! The rules.
 //! - `Hello` opens a session, whose number is in the CRC of every frame: nothing that was said in another one is ever taken, and a late
@@ -28,6 +29,7 @@
 
 pub mod action;
 pub mod endpoint;
+pub mod event;
 pub mod frame;
 pub mod message;
 pub mod receiver;
@@ -35,7 +37,8 @@ pub mod sender;
 
 pub use action::{Action, Answer, Chunk};
 pub use endpoint::{End, Endpoint, Machine};
+pub use event::{Event, SenderError};
 pub use frame::{Decoder, FRAME_SIZE, Frame, FrameError, NO_SESSION, Received, encode};
 pub use message::{Command, Ending, Identity, LinkError, MotionState, Refusal, Report, Telemetry, VERSION};
 pub use receiver::{Receiver, Turn};
-pub use sender::{Event, Sender, SenderError};
+pub use sender::Sender;

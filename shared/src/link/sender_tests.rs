@@ -7,6 +7,7 @@ use self::std::vec::Vec;
 
 use proptest::prelude::*;
 
+use super::super::message::Identity;
 use super::super::receiver::{Receiver, Turn};
 use super::*;
 use crate::complex::Complex;
