@@ -10,6 +10,7 @@ use std::time::Instant;
 use serde::Serialize;
 use shared::link::{Action, Answer, Ending, Event, Identity, Refusal, Sender, SenderError, Telemetry};
 use shared::piece::{Header, Piece};
+use shared::safety::Coordinates;
 
 use crate::transport::Transport;
 
@@ -104,17 +105,18 @@ pub fn new_session() -> u32 {
     (RandomState::new().build_hasher().finish() as u32).max(1)
 }
 
-/// Sends a job and waits for its end. `look` sees what happens; `wish` is asked again and again for what a person wants.
+/// Sends a job in these coordinates and waits for its end. `look` sees what happens; `wish` is asked again and again for what a person wants.
 ///
 /// The transfer is told as far as it went, failed or not.
 pub fn stream(
     line: &mut dyn Transport,
     header: &Header<f32>,
     pieces: &[Piece<f32>],
+    coordinates: Coordinates,
     mut look: impl FnMut(Happening),
     mut wish: impl FnMut() -> Option<Wish>,
 ) -> (Transfer, Result<(), StreamError>) {
-    let sender = Sender::new(new_session(), header, pieces);
+    let sender = Sender::new(new_session(), header, pieces).in_coordinates(coordinates);
     let mut sender = match line.baud() {
         Some(baud) => sender.at_baud(baud),
         None => sender,

@@ -16,6 +16,7 @@ use shared::link::{
 use shared::motion::MotionCommand;
 use shared::pace::PaceLimits;
 use shared::piece::{Header, Order, Piece, Shape};
+use shared::safety::{Coordinates, End, Fault, Refused};
 
 use crate::strict_machine::StrictMachine;
 
@@ -68,7 +69,8 @@ pub fn commands() -> Vec<Command> {
         Command::Piece(piece(arc)),
         Command::Piece(Piece { further, ..line }),
         Command::Piece(Piece { last: Some([Fixed(262_144), Fixed(131_072), Fixed(0)]), ..line }),
-        Command::Run,
+        Command::Run(Coordinates::Machine),
+        Command::Run(Coordinates::Relative),
         Command::Abort,
         Command::Status,
         Command::Hello { version: VERSION, session: SESSION },
@@ -83,10 +85,10 @@ pub fn reports() -> Vec<Report> {
     vec![
         Report::Hello { version: VERSION, session: SESSION, identity: Identity::default() },
         Report::Ack { next: 300, room: 60 },
-        Report::Refused { sequence: 4, reason: Refusal::Busy },
+        Report::Refused { sequence: 4, reason: Refusal::Machine(Refused::PositionUnknown { axis: 2 }) },
         Report::Telemetry(Telemetry { tick: 70_000, speed: 31.5, ..Telemetry::default() }),
         Report::Finished { ticks: 70_000, residual: 0.5e-3, hash: 0x0123_4567_89ab_cdef },
-        Report::Ended(Ending::Cancelled),
+        Report::Ended(Ending::Fault(Fault::Limit { axis: 1, end: End::High })),
         Report::Done { number: 3, outcome: Ok(answer) },
     ]
 }

@@ -10,6 +10,7 @@ use shared::link::action::{CHUNK_SIZE, IMAGE_SIZE};
 use shared::link::{Action, Answer, Chunk, End, Ending, Frame, Identity, Machine, Refusal, Telemetry};
 use shared::loader::Motion;
 use shared::motion::MotionCommand;
+use shared::safety::{Coordinates, Refused};
 use shared::supply::PathTime;
 
 /// Pieces that its queue holds: few, so that it is full often.
@@ -21,6 +22,8 @@ pub struct StrictMachine {
     executor: Executor<f32>,
     queue: Queue,
     aborted: bool,
+    /// Whether its position is known: otherwise it refuses a job in its coordinates.
+    pub known: bool,
     /// Pieces that were taken since it was made.
     pub taken: u32,
     /// Motions that were started since it was made.
@@ -59,6 +62,7 @@ impl Default for StrictMachine {
             executor: Executor::new(shared::TICK, [Fixed(0); 3]),
             queue: Queue::default(),
             aborted: false,
+            known: true,
             taken: 0,
             started: 0,
             acted: 0,
@@ -138,7 +142,10 @@ impl Machine for StrictMachine {
         true
     }
 
-    fn start(&mut self, motion: &Motion<f32>, [x, y]: [Fixed; 2]) -> Result<(), Refusal> {
+    fn start(&mut self, motion: &Motion<f32>, coordinates: Coordinates, [x, y]: [Fixed; 2]) -> Result<(), Refusal> {
+        if coordinates == Coordinates::Machine && !self.known {
+            return Err(Refusal::Machine(Refused::PositionUnknown { axis: 0 }));
+        }
         assert!(!self.is_on_path() && !self.queue.pieces.is_empty());
         check_position([x, y, Fixed(0)]);
         self.executor.stand_at([x, y, Fixed(0)]);

@@ -6,11 +6,16 @@ use proptest::prelude::*;
 use shared::complex::Complex;
 use shared::executor::State;
 use shared::fixed::Fixed;
-use shared::link::{Action, Answer, Chunk, Command, Decoder, NO_SESSION, Received, Refusal, Report, VERSION, encode};
+use shared::link::{
+    Action, Answer, Chunk, Command, Decoder, Endpoint, NO_SESSION, Received, Refusal, Report, Sender, SenderError,
+    VERSION, encode,
+};
 use shared::motion::MotionCommand;
 use shared::pace::PaceLimits;
 use shared::piece::{Header, Order, Piece, Shape};
+use shared::safety::{Coordinates, Refused};
 use tests::link_script::{play, wrap};
+use tests::strict_machine::StrictMachine;
 
 const SESSION: u32 = 0x0051_0e55;
 
@@ -54,7 +59,7 @@ fn running(settings: Settings) -> Controller {
     let mut controller = open(settings);
     say(&mut controller, 1, &Command::Begin(HEADER));
     say(&mut controller, 2, &Command::Piece(line()));
-    assert!(matches!(say(&mut controller, 3, &Command::Run)[..], [Report::Ack { next: 4, .. }]));
+    assert!(matches!(say(&mut controller, 3, &Command::Run(Coordinates::Machine))[..], [Report::Ack { next: 4, .. }]));
     controller
 }
 
@@ -78,6 +83,36 @@ fn a_host_that_vanishes_leaves_what_was_configured() {
         let mut controller = running(Settings { alone, ..Settings::default() });
         pass(&mut controller, 8_000);
         assert_eq!(controller.state(), state, "{alone:?}");
+    }
+}
+
+/// A job in the machine's coordinates is refused by a machine that does not know where it is, and nothing starts; the same job from
+/// where it stands does.
+#[test]
+fn coordinates_reach_the_machine() {
+    for (known, coordinates, starts) in [
+        (false, Coordinates::Machine, false),
+        (false, Coordinates::Relative, true),
+        (true, Coordinates::Machine, true),
+        (true, Coordinates::Relative, true),
+    ] {
+        let mut machine = StrictMachine::default();
+        machine.known = known;
+        let (header, pieces) = (HEADER, [line()]);
+        let mut sender = Sender::new(SESSION, &header, &pieces).in_coordinates(coordinates);
+        let mut endpoint = Endpoint::new();
+        for now_us in (0..1_000_000).step_by(1_000) {
+            while let Some(frame) = sender.poll(now_us) {
+                frame.iter().for_each(|&byte| endpoint.receive(&mut machine, 0, byte));
+            }
+            for byte in std::mem::take(&mut machine.said) {
+                sender.receive(now_us, byte);
+            }
+        }
+        assert_eq!(machine.started, u32::from(starts), "{coordinates:?}, known: {known}");
+        let reason = Refusal::Machine(Refused::PositionUnknown { axis: 0 });
+        let refused = SenderError::Refused { piece: None, reason };
+        assert_eq!(sender.error(), (!starts).then_some(refused));
     }
 }
 

@@ -4,6 +4,7 @@
 use proptest::prelude::*;
 use serde::de::DeserializeOwned;
 use shared::link::{Command, Decoder, FRAME_SIZE, Frame, NO_SESSION, Report, encode};
+use shared::safety::Coordinates;
 use tests::link_script::{SESSION, commands, reports, up_to_four_bits_are_found};
 
 /// What a decoder in the session finds in these bytes: messages, as far as they are of the session.
@@ -56,7 +57,7 @@ proptest! {
         let end = bytes.len();
         bytes.push(0);
         bytes.extend(&commands[5]);
-        prop_assert_eq!(found::<Command>(&bytes).pop(), Some(Command::Run));
+        prop_assert_eq!(found::<Command>(&bytes).pop(), Some(Command::Run(Coordinates::Machine)));
         bytes.truncate(end + 1);
         bytes.extend(&reports[1]);
         prop_assert_eq!(found::<Report>(&bytes).pop(), Some(Report::Ack { next: 300, room: 60 }));

@@ -4,7 +4,7 @@ use std::str::FromStr;
 
 use host_sim::session::Session;
 use host_sim::stream::StreamError;
-use shared::link::{Action, Refusal, Telemetry};
+use shared::link::{Action, Refusal};
 use shared::motion::MotionCommand;
 
 /// One action by its name.
@@ -69,18 +69,13 @@ pub fn carry_out(session: &mut Session<'_>, actions: &[Act], mut done: impl FnMu
         session.ask(*action).map_err(gone)?.map_err(|reason| refused(action, &reason))?;
         if *action == Action::Home {
             let telemetry = session.until_homed().map_err(gone)?;
-            if let Some(fault) = fault(&telemetry) {
+            if let Some(fault) = telemetry.fault {
                 return Err(format!("home was not found: {fault}"));
             }
         }
         done(&name(action));
     }
     Ok(())
-}
-
-/// What is wrong with the machine, in one sentence.
-pub fn fault(telemetry: &Telemetry) -> Option<String> {
-    (telemetry.fault != 0).then(|| format!("the controller has fault {}", telemetry.fault))
 }
 
 #[cfg(test)]

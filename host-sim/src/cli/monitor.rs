@@ -9,6 +9,7 @@ use host_sim::session::Session;
 use host_sim::transport::{self, Transport};
 use serde::Serialize;
 use shared::link::Telemetry;
+use shared::safety::State;
 
 use super::Failure;
 use super::act::{Act, carry_out, refused};
@@ -48,13 +49,16 @@ pub struct Monitor {
 #[derive(Serialize)]
 struct Line {
     state: &'static str,
+    machine: &'static str,
+    fault: Option<String>,
+    unknown_axes: Vec<u8>,
     tick: u32,
     pieces: u32,
     queued: u16,
     position_mm: [f64; 3],
+    actual_mm: [f64; 3],
     feed_mm_per_s: f32,
     percent: u8,
-    fault: u8,
     cycles: u32,
     worst_cycles: u32,
     stack_bytes: u32,
@@ -65,13 +69,16 @@ impl From<&Telemetry> for Line {
     fn from(telemetry: &Telemetry) -> Self {
         Self {
             state: telemetry.state.name(),
+            machine: telemetry.machine.name(),
+            fault: telemetry.fault.map(|fault| fault.to_string()),
+            unknown_axes: telemetry.unknown_axes().collect(),
             tick: telemetry.tick,
             pieces: telemetry.pieces,
             queued: telemetry.queued,
             position_mm: telemetry.setpoint.map(|coordinate| coordinate.to_mm()),
+            actual_mm: telemetry.actual.map(|coordinate| coordinate.to_mm()),
             feed_mm_per_s: telemetry.speed,
             percent: telemetry.percent,
-            fault: telemetry.fault,
             cycles: telemetry.cycles,
             worst_cycles: telemetry.worst_cycles,
             stack_bytes: telemetry.stack,
@@ -80,16 +87,25 @@ impl From<&Telemetry> for Line {
     }
 }
 
-/// A report in one line.
+/// A report in one line: where the machine is, what is wrong, and which positions are unknown.
 pub fn status(telemetry: &Telemetry) -> String {
     let [x, y, z] = telemetry.setpoint.map(|coordinate| coordinate.to_mm());
-    format!(
-        "{}: {x:.3} {y:.3} {z:.3} mm, {:.1} mm/s, {} %, {} queued",
-        telemetry.state.name(),
-        telemetry.speed,
-        telemetry.percent,
-        telemetry.queued
-    )
+    // The state of the motion says nothing of an emergency stop.
+    let state = if telemetry.machine == State::EStop { State::EStop.name() } else { telemetry.state.name() };
+    let mut line = format!(
+        "{state}: {x:.3} {y:.3} {z:.3} mm, {:.1} mm/s, {} %, {} queued",
+        telemetry.speed, telemetry.percent, telemetry.queued
+    );
+    if let Some(fault) = telemetry.fault {
+        line.push_str(&format!("; {fault}"));
+    }
+    let unknown: Vec<String> = telemetry.unknown_axes().map(|axis| axis.to_string()).collect();
+    match &unknown[..] {
+        [] => {}
+        [axis] => line.push_str(&format!("; the position of axis {axis} is unknown")),
+        axes => line.push_str(&format!("; the positions of axes {} are unknown", axes.join(", "))),
+    }
+    line
 }
 
 impl Monitor {
@@ -147,5 +163,28 @@ impl Monitor {
             Some(Press::Quit | Press::Interrupt) => Want::Leave,
         };
         monitor(line, Duration::from_millis(self.every), look, want).map_err(|error| error.to_string())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use shared::safety::{Fault, ResetCause};
+
+    use super::*;
+
+    #[test]
+    fn what_is_wrong_and_what_is_unknown_is_said() {
+        let mut telemetry = Telemetry { axes: 0b111, known: 0b111, percent: 100, ..Telemetry::default() };
+        assert_eq!(status(&telemetry), "idle: 0.000 0.000 0.000 mm, 0.0 mm/s, 100 %, 0 queued");
+        telemetry.known = 0b101;
+        assert!(status(&telemetry).ends_with("0 queued; the position of axis 1 is unknown"));
+        let fault = Some(Fault::Reset { cause: ResetCause::Watchdog });
+        telemetry = Telemetry { machine: State::EStop, fault, known: 0b100, ..telemetry };
+        let said = status(&telemetry);
+        assert!(said.starts_with("e-stop: "), "{said}");
+        assert!(
+            said.ends_with("; the watchdog restarted the controller; the positions of axes 0, 1 are unknown"),
+            "{said}"
+        );
     }
 }

@@ -7,12 +7,13 @@ use std::time::Instant;
 
 use clap::Args;
 use host_sim::input::InputError;
-use host_sim::stream::{Happening, Wish, stream};
+use host_sim::stream::{Happening, StreamError, Wish, stream};
 use host_sim::transport;
 use indicatif::ProgressBar;
-use shared::link::Action;
+use shared::link::{Action, Refusal, SenderError};
 use shared::motion::MotionCommand;
 use shared::piece::Piece;
+use shared::safety::{Coordinates, Refused, State};
 
 use super::Failure;
 use super::act::refused;
@@ -29,6 +30,9 @@ use super::output::{failed, json};
 pub struct Stream {
     #[command(flatten)]
     motion: Motion,
+    /// Run the job from where the machine stands; otherwise its coordinates are the machine's, every axis of which has to know where it is
+    #[arg(long)]
+    from_here: bool,
     /// The controller: a serial port, a file that is a line, or `tcp:HOST:PORT`
     #[arg(long)]
     port: String,
@@ -51,6 +55,7 @@ impl Stream {
         let mut log = Log::create(self.log.as_deref())?;
         let mut line = transport::open(&self.port, self.baud)?;
         let bar = super::progress_of(pieces.len() as u64, "{pos} of {len} pieces, {msg}");
+        let coordinates = if self.from_here { Coordinates::Relative } else { Coordinates::Machine };
         // One closure shows what the controller says, the other reads keys, which go on from it.
         let keys = RefCell::new(Keys::new());
         let look = |happening| {
@@ -60,7 +65,8 @@ impl Stream {
             show(&bar, &happening);
             log.write(&happening);
         };
-        let (transfer, outcome) = stream(&mut *line, &path.header, &pieces, look, || wish(&mut keys.borrow_mut()));
+        let (transfer, outcome) =
+            stream(&mut *line, &path.header, &pieces, coordinates, look, || wish(&mut keys.borrow_mut()));
         drop(keys);
         bar.finish_and_clear();
         log.end(&format!("{transfer:?} {outcome:?}")).map_err(|error| failed("--log", error))?;
@@ -71,7 +77,7 @@ impl Stream {
             return Err(if error.is_input() {
                 InputError::new(&self.port, error).into()
             } else {
-                Failure::Run(format!("{}: {error}", self.port))
+                Failure::Run(format!("{}: {error}{}", self.port, remedy(&error, &self.port)))
             });
         }
         if self.json.as_deref() != Some("-") {
@@ -81,6 +87,22 @@ impl Stream {
             }
         }
         Ok(())
+    }
+}
+
+/// What would help, where it is a command of this program.
+fn remedy(error: &StreamError, port: &str) -> String {
+    let StreamError::Sender(SenderError::Refused { reason, .. }) = error else { return String::new() };
+    match reason {
+        Refusal::Stopped
+        | Refusal::Fault(_)
+        | Refusal::Machine(Refused::State { state: State::Fault | State::EStop }) => {
+            format!(" (hodograph monitor --port {port} --act acknowledge)")
+        }
+        Refusal::Machine(Refused::PositionUnknown { .. }) => {
+            format!(" (hodograph monitor --port {port} --act home), or run it --from-here")
+        }
+        _ => String::new(),
     }
 }
 

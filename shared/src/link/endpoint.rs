@@ -13,6 +13,7 @@ use crate::fixed::Fixed;
 use crate::loader::{Loader, Motion};
 use crate::motion::MotionCommand;
 use crate::piece::{Header, Piece};
+use crate::safety::Coordinates;
 
 /// Telemetry comes every so many ticks: 51 times a second.
 pub const TELEMETRY_TICKS: u32 = 20;
@@ -32,8 +33,9 @@ pub trait Machine {
     fn clear(&mut self);
     /// Puts a piece into the queue; false where it is full.
     fn push(&mut self, piece: ActivePiece<f32>) -> bool;
-    /// Begins the path whose first pieces stand in the queue, and whose first point this is.
-    fn start(&mut self, motion: &Motion<f32>, at: [Fixed; 2]) -> Result<(), Refusal>;
+    /// Begins the path whose first pieces stand in the queue, in these coordinates, in which `at` is its first point. Errors: why not;
+    /// nothing moves then.
+    fn start(&mut self, motion: &Motion<f32>, coordinates: Coordinates, at: [Fixed; 2]) -> Result<(), Refusal>;
     /// Stops at once and empties the queue.
     fn stop(&mut self);
     /// Carries out an action, whose numbers are in range.
@@ -243,7 +245,7 @@ impl Endpoint {
         match command {
             Command::Begin(header) => self.begin(machine, &header),
             Command::Piece(piece) => self.load(machine, &piece),
-            Command::Run => self.run(machine),
+            Command::Run(coordinates) => self.run(machine, coordinates),
             Command::Abort => {
                 machine.stop();
                 self.job = match self.job {
@@ -290,7 +292,7 @@ impl Endpoint {
         outcome
     }
 
-    fn run(&mut self, machine: &mut impl Machine) -> Result<(), Refusal> {
+    fn run(&mut self, machine: &mut impl Machine, coordinates: Coordinates) -> Result<(), Refusal> {
         machine.ready()?;
         match core::mem::replace(&mut self.job, Job::None) {
             Job::None => Err(Refusal::NoJob),
@@ -304,7 +306,7 @@ impl Endpoint {
             }
             Job::Loading(loader) => {
                 let Some(at) = loader.start() else { return Err(Refusal::Path(PathError::Empty)) };
-                machine.start(&loader.motion(), at)?;
+                machine.start(&loader.motion(), coordinates, at)?;
                 self.job = Job::Running(loader);
                 Ok(())
             }

@@ -18,6 +18,7 @@
 //!   copy of the `Hello` itself changes nothing. A session has one job at most.
 //! - While a host is heard whose job is in motion, no other session is opened. Once it has vanished, the motion is left to the next host,
 //!   which may resume, cancel or abort it, and begins no job of its own before.
+//! - A job says in which coordinates it is. One in those of the machine is refused while the position of an axis is unknown.
 //! - The commands of a job carry a sequence number. The controller takes the next expected one only; a repeated one is acknowledged
 //!   and not executed; after a gap or a broken frame it says which one it expects, and the sender goes back to it. An
 //!   acknowledgement carries the room in the queue of pieces, and the sender never has more pieces in flight than that.

@@ -15,6 +15,7 @@ use super::event::{Event, SenderError};
 use super::frame::{Decoder, FRAME_SIZE, Frame, NO_SESSION, encode};
 use super::message::{Command, Refusal, Report, VERSION};
 use crate::piece::{Header, Piece};
+use crate::safety::Coordinates;
 
 /// Bytes that a controller can hold before its endpoint looks at them; it discards none.
 pub const RECEIVE_SIZE: usize = 2_048;
@@ -50,6 +51,7 @@ pub struct Sender<'a> {
     session: u32,
     header: Option<&'a Header<f32>>,
     pieces: &'a [Piece<f32>],
+    coordinates: Coordinates,
     decoder: Decoder,
     /// Bytes of the job that may be in flight, and the frames that are: those from `acknowledged` to `next`.
     window: usize,
@@ -96,6 +98,7 @@ impl<'a> Sender<'a> {
             session,
             header: None,
             pieces: &[],
+            coordinates: Coordinates::Machine,
             decoder,
             window: WINDOW,
             in_flight: Deque::new(),
@@ -117,6 +120,11 @@ impl<'a> Sender<'a> {
             error: None,
             last_refusal: None,
         }
+    }
+
+    /// The same with the job in these coordinates, and not in those of the machine.
+    pub fn in_coordinates(self, coordinates: Coordinates) -> Self {
+        Self { coordinates, ..self }
     }
 
     /// The same over a line of so many bits a second, ten for a byte.
@@ -182,7 +190,7 @@ impl<'a> Sender<'a> {
     /// The next command of the job, where window and room allow it.
     fn script(&mut self, now_us: u64) -> Option<Frame> {
         let command = self.command(self.next)?;
-        if command == Command::Run && self.acknowledged < self.next {
+        if matches!(command, Command::Run(_)) && self.acknowledged < self.next {
             // Nothing starts before all that is to be there has been taken: a refused piece is heard of first.
             return None;
         }
@@ -351,7 +359,7 @@ impl<'a> Sender<'a> {
         let run = self.run_index();
         match index {
             1 => Some(Command::Begin(*header)),
-            _ if index == run => Some(Command::Run),
+            _ if index == run => Some(Command::Run(self.coordinates)),
             _ => self.pieces.get(self.pieces_before(index) as usize).copied().map(Command::Piece),
         }
     }

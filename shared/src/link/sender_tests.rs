@@ -76,7 +76,7 @@ impl Model {
                 ack(self)
             }
             Turn::Take(_, command) => {
-                self.running |= command == Command::Run;
+                self.running |= matches!(command, Command::Run(_));
                 ack(self)
             }
             Turn::Repeated | Turn::RepeatedAction(_) | Turn::Ignore => ack(self),
