@@ -4,11 +4,12 @@
 use host_sim::controller::{Alone, Controller, Settings, checksum};
 use proptest::prelude::*;
 use shared::complex::Complex;
+use shared::error::PathError;
 use shared::executor::State;
 use shared::fixed::Fixed;
 use shared::link::{
     Action, Answer, Chunk, Command, Decoder, Endpoint, NO_SESSION, Received, Refusal, Report, Sender, SenderError,
-    VERSION, encode,
+    Telemetry, VERSION, encode,
 };
 use shared::motion::MotionCommand;
 use shared::pace::PaceLimits;
@@ -114,6 +115,26 @@ fn coordinates_reach_the_machine() {
         let refused = SenderError::Refused { piece: None, reason };
         assert_eq!(sender.error(), (!starts).then_some(refused));
     }
+}
+
+/// A refusal may be lost on its way like anything else, while telemetry says that all was taken. So it is said again to a host that asks,
+/// for as long as its session lasts.
+#[test]
+fn a_refusal_is_said_again() {
+    let mut controller = open(Settings::default());
+    say(&mut controller, 1, &Command::Begin(HEADER));
+    let faulty = Command::Piece(Piece { feed: -1.0, ..line() });
+    let refused = Report::Refused { sequence: 2, reason: Refusal::Path(PathError::Feed { feed: -1.0 }) };
+    assert_eq!(say(&mut controller, 2, &faulty), [refused]);
+    let run = say(&mut controller, 3, &Command::Run(Coordinates::Machine));
+    assert_eq!(run, [Report::Refused { sequence: 3, reason: Refusal::NoJob }]);
+    let said = say(&mut controller, 4, &Command::Status);
+    assert!(matches!(said[..], [Report::Telemetry(Telemetry { next: 4, .. }), again] if again == refused), "{said:?}");
+    say(&mut controller, 0, &Command::Hello { version: VERSION, session: SESSION - 1 });
+    controller.take_output();
+    controller.receive(&encode(SESSION - 1, 1, &Command::Status).unwrap());
+    let frames = controller.take_output().into_iter().filter(|&byte| byte == 0).count();
+    assert_eq!(frames, 1, "telemetry alone: the next session has nothing to do with it");
 }
 
 /// A host that is heard keeps its job to itself. One that has vanished leaves it to the next, which may go on with it, and begins a job

@@ -98,6 +98,8 @@ pub struct Endpoint {
     decoder: Decoder,
     receiver: Receiver,
     job: Job,
+    /// The first command of the session that was refused, and why; said again to whoever asks.
+    refused: Option<(u16, Refusal)>,
     /// What came of the last action.
     outcome: Result<Answer, Refusal>,
     /// Reports are numbered too, so that a trace shows what was missed.
@@ -122,6 +124,7 @@ impl Endpoint {
             decoder: Decoder::new(),
             receiver: Receiver::new(),
             job: Job::None,
+            refused: None,
             outcome: Ok(Answer::Done),
             report_number: 0,
             reported_at: 0,
@@ -149,7 +152,10 @@ impl Endpoint {
             }
             Turn::Take(sequence, command) => match self.obey(machine, command) {
                 Ok(()) => self.acknowledge(machine),
-                Err(reason) => self.send(machine, &Report::Refused { sequence, reason }),
+                Err(reason) => {
+                    self.refused = self.refused.or(Some((sequence, reason)));
+                    self.send(machine, &Report::Refused { sequence, reason });
+                }
             },
             Turn::Repeated => self.acknowledge(machine),
             Turn::RepeatedAction(number) => self.send(machine, &Report::Done { number, outcome: self.outcome }),
@@ -215,7 +221,7 @@ impl Endpoint {
                 }
                 self.receiver.open(session);
                 self.decoder.enter(session);
-                self.outcome = Ok(Answer::Done);
+                (self.refused, self.outcome) = (None, Ok(Answer::Done));
                 Ok(())
             }
         };
@@ -238,6 +244,9 @@ impl Endpoint {
         self.telemetry(machine, now, self.receiver.session());
         if let Job::Ended(end) = self.job {
             self.send(machine, &end.into());
+        }
+        if let Some((sequence, reason)) = self.refused {
+            self.send(machine, &Report::Refused { sequence, reason });
         }
     }
 

@@ -37,7 +37,7 @@ pub enum Command {
     Run(Coordinates),
     /// Stops the motion where it is and forgets the job. Taken out of sequence.
     Abort,
-    /// Asks for a [`Telemetry`], and for the end of a job that has ended. Taken out of sequence, and in no session too: then it is
+    /// Asks for a [`Telemetry`], and for the end of a job that has ended or the refusal of one that was refused. Taken out of sequence, and in no session too: then it is
     /// answered in none, and the session of somebody else does not notice. A host that has nothing to say says this, to be heard.
     Status,
     /// Asks for something beside the job. Numbered apart from the rest, from 0.
