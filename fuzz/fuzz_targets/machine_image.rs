@@ -16,7 +16,8 @@ fuzz_target!(|bytes: &[u8]| {
     read(bytes);
     // The same as the content of an image whose checksum fits.
     let Ok(length) = u16::try_from(bytes.len()) else { return };
-    let said: Vec<u8> = VERSION.to_le_bytes().into_iter().chain(length.to_le_bytes()).chain(bytes.iter().copied()).collect();
+    let said: Vec<u8> =
+        VERSION.to_le_bytes().into_iter().chain(length.to_le_bytes()).chain(bytes.iter().copied()).collect();
     let mut image = b"HODO".to_vec();
     image.extend_from_slice(&said[..4]);
     image.extend_from_slice(&checksum(&said).to_le_bytes());

@@ -230,6 +230,15 @@ fn an_override_outside_its_range_is_refused() {
     }
 }
 
+/// What the property below says would be easy to keep if nothing ever reached the machine: good commands do.
+#[test]
+fn good_commands_of_a_script_reach_the_machine() {
+    // As they are, in their turn: begin, two pieces, run, an override; some ticks, and a piece that lacks its end.
+    let machine = play(&[0, 0, 0, 0, 1, 0, 0, 2, 0, 0, 5, 0, 0, 13, 0, 7, 1, 0, 3, 0]);
+    assert_eq!((machine.taken, machine.started, machine.acted), (3, 1, 1));
+    assert!(machine.state().is_moving());
+}
+
 proptest! {
     /// Any bytes at all: no panic, and nothing moves.
     #[test]

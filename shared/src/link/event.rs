@@ -26,7 +26,7 @@ pub enum Event {
     Ended(Ending),
     /// An action was carried out, or refused.
     Done(Action, Result<Answer, Refusal>),
-    /// The job was refused; [`Sender::error`] says why.
+    /// The job was refused; [`Sender::error`](super::Sender::error) says why.
     Failed(SenderError),
 }
 

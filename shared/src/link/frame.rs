@@ -7,6 +7,9 @@
 //! there [Koopman, CRC polynomial zoo]), and every burst of up to 32 bits; the longest body here is 1280 bits, which is why a
 //! frame holds one piece and not several. An error that makes or unmakes a zero moves the ends of frames, and COBS spreads it over
 //! the body: such a frame passes once in 2^32. At one broken frame a second that is once in 136 years.
+//!
+//! What is found is that a frame is none of the session. An error that looks like the session's number makes it one of no session, where a
+//! controller takes `Hello` and `Status` alone, and a host that is in a session takes nothing.
 
 use core::fmt;
 
