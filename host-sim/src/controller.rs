@@ -13,6 +13,7 @@ use shared::link::action::IMAGE_SIZE;
 use shared::link::{Action, Answer, Chunk, End, Ending, Endpoint, Frame, Identity, Machine, Refusal, Telemetry};
 use shared::loader::Motion;
 use shared::motion::MotionCommand;
+use shared::safety::{self, Coordinates, Fault};
 use shared::supply::PathTime;
 
 /// What a host that vanishes leaves.
@@ -32,13 +33,18 @@ pub struct Settings {
     pub capacity: u16,
     /// What a host that vanishes leaves.
     pub alone: Alone,
+    /// Whether it can keep a configuration image.
+    pub keeps_image: bool,
 }
 
 impl Default for Settings {
     fn default() -> Self {
-        Self { capacity: 63, alone: Alone::default() }
+        Self { capacity: 63, alone: Alone::default(), keeps_image: true }
     }
 }
+
+/// x, y and z; their positions are always known.
+const AXES: u8 = 0b111;
 
 /// See the module.
 #[derive(Debug)]
@@ -58,7 +64,7 @@ struct Virtual {
     ticks: u32,
     started: bool,
     aborted: bool,
-    fault: u8,
+    fault: Option<Fault>,
     before: Position,
     loaded: u64,
     image: Vec<u8>,
@@ -99,7 +105,7 @@ impl Controller {
             ticks: 0,
             started: false,
             aborted: false,
-            fault: 0,
+            fault: None,
             before: [Fixed(0); 3],
             loaded: 0,
             image: Vec::new(),
@@ -149,10 +155,10 @@ impl Controller {
         self.machine.queue.pieces.len()
     }
 
-    /// Sets a fault as a machine would; 0 takes it away. The motion stops at once.
-    pub fn set_fault(&mut self, number: u8) {
-        self.machine.fault = number;
-        if number != 0 {
+    /// Sets a fault as a machine would, or takes it away. With one the motion stops at once.
+    pub fn set_fault(&mut self, fault: Option<Fault>) {
+        self.machine.fault = fault;
+        if fault.is_some() {
             self.machine.executor.abort();
             self.machine.queue.discard();
         }
@@ -221,7 +227,7 @@ impl Machine for Virtual {
     }
 
     fn ready(&self) -> Result<(), Refusal> {
-        if self.fault == 0 { Ok(()) } else { Err(Refusal::Fault(self.fault)) }
+        self.fault.map_or(Ok(()), |fault| Err(Refusal::Fault(fault)))
     }
 
     fn clear(&mut self) {
@@ -237,7 +243,8 @@ impl Machine for Virtual {
         true
     }
 
-    fn start(&mut self, motion: &Motion<f32>, [x, y]: [Fixed; 2]) -> Result<(), Refusal> {
+    /// It stands where any job begins, in whatever coordinates.
+    fn start(&mut self, motion: &Motion<f32>, _: Coordinates, [x, y]: [Fixed; 2]) -> Result<(), Refusal> {
         self.executor.stand_at([x, y, Fixed(0)]);
         self.executor.begin(motion);
         (self.hash, self.ticks, self.started) = (SetpointHash::new(), 0, true);
@@ -255,8 +262,13 @@ impl Machine for Virtual {
             Action::Motion(command) => self.executor.command(command).map(|()| Answer::Done).map_err(Refusal::Motion),
             Action::Home => Err(Refusal::Unsupported),
             Action::Acknowledge => {
-                self.fault = 0;
+                self.fault = None;
                 Ok(Answer::Done)
+            }
+            Action::WriteImage { .. } | Action::CommitImage { .. } | Action::ReadImage { .. }
+                if !self.settings.keeps_image =>
+            {
+                Err(Refusal::Unsupported)
             }
             Action::WriteImage { offset, chunk } => self.put_aside(offset, &chunk),
             Action::CommitImage { length, crc } => self.commit(length, crc),
@@ -265,8 +277,10 @@ impl Machine for Virtual {
     }
 
     fn end(&self) -> Option<End> {
+        if let Some(fault) = self.fault {
+            return Some(End::Early(Ending::Fault(fault)));
+        }
         match self.executor.state() {
-            _ if self.fault != 0 => Some(End::Early(Ending::Fault(self.fault))),
             _ if self.aborted => Some(End::Early(Ending::Stopped)),
             State::Finished => {
                 Some(End::Finished { ticks: self.ticks, residual: self.executor.spare_time(), hash: self.hash.value() })
@@ -282,19 +296,30 @@ impl Machine for Virtual {
         let way = |(now, before): (Fixed, Fixed)| now.minus::<f32>(before).powi(2);
         let square: f32 = setpoint.into_iter().zip(self.before).map(way).sum();
         let state = match self.executor.state() {
-            _ if self.fault != 0 => MotionState::Fault,
+            _ if self.fault.is_some() => MotionState::Fault,
             State::Idle | State::Finished | State::Cancelled if loading => MotionState::Loading,
             _ if self.aborted => MotionState::Stopped,
             state => state.into(),
         };
+        let machine = match self.executor.state() {
+            _ if self.fault.is_some() => safety::State::Fault,
+            State::Holding | State::Held => safety::State::Hold,
+            State::Cancelling => safety::State::Braking,
+            State::Run | State::Braking | State::Starved => safety::State::Run,
+            State::Idle | State::Finished | State::Cancelled => safety::State::Idle,
+        };
         Telemetry {
             state,
+            machine,
+            fault: self.fault,
+            axes: AXES,
+            known: AXES,
             tick: self.ticks,
             pieces: self.executor.place().map_or(0, |place| place.piece + 1),
             setpoint,
+            actual: setpoint,
             speed: square.sqrt() / shared::TICK,
             percent: self.executor.percent(),
-            fault: self.fault,
             ..Telemetry::default()
         }
     }

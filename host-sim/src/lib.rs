@@ -17,7 +17,9 @@
 //! | [`simulate`] | the tick of `shared` over a path, with or without a plant |
 //! | [`controller`] | a controller without hardware, behind a line of bytes |
 //! | [`transport`] | the wire to a controller: serial port, file, TCP |
-//! | [`stream`] | a job over a transport, and a look at a controller |
+//! | [`stream`] | a job over a transport |
+//! | [`session`] | one question after another over a transport |
+//! | [`monitor`] | a look at a controller |
 //! | [`measure`] | contour error and exact time, independent of the kernel |
 //! | [`trimming`] | what an offset comes to, in the units of its file |
 //! | [`reproduce`] | published experiments beside their published figures |
@@ -29,6 +31,7 @@ pub mod input;
 pub mod job;
 pub mod machine;
 pub mod measure;
+pub mod monitor;
 pub mod offset;
 pub mod pacing;
 pub mod path;
@@ -36,6 +39,7 @@ pub mod plant;
 pub mod prepare;
 pub mod report;
 pub mod reproduce;
+pub mod session;
 pub mod simulate;
 pub mod stream;
 pub mod transport;

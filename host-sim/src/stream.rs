@@ -1,18 +1,16 @@
-//! Sends a job over a transport, and looks on.
+//! Sends a job over a transport.
 //!
 //! The protocol is [`Sender`]'s, which knows no port and no clock; here it meets both.
 
 use std::fmt;
 use std::hash::{BuildHasher, Hasher, RandomState};
 use std::io;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use serde::Serialize;
-use shared::link::{
-    Action, Answer, Command, Decoder, Ending, Event, Identity, NO_SESSION, Refusal, Report, Sender, SenderError,
-    Telemetry, encode,
-};
+use shared::link::{Action, Answer, Ending, Event, Identity, Refusal, Sender, SenderError, Telemetry};
 use shared::piece::{Header, Piece};
+use shared::safety::Coordinates;
 
 use crate::transport::Transport;
 
@@ -60,7 +58,7 @@ pub enum Wish {
     Abort,
 }
 
-/// Why a transfer failed.
+/// Why a conversation failed.
 #[derive(Debug)]
 pub enum StreamError {
     /// The line is gone.
@@ -69,9 +67,16 @@ pub enum StreamError {
     Sender(SenderError),
     /// The job ended before its last point.
     Ended(Ending),
+    /// The search for home does not end.
+    Homing,
 }
 
 impl StreamError {
+    /// Nobody answers.
+    pub const fn silent() -> Self {
+        Self::Sender(SenderError::Lost { reason: None })
+    }
+
     /// Whether what was asked for cannot be had from this controller, before anything was begun.
     pub fn is_input(&self) -> bool {
         matches!(self, Self::Sender(SenderError::Refused { reason: Refusal::Version { .. } | Refusal::Path(_), .. }))
@@ -84,6 +89,7 @@ impl fmt::Display for StreamError {
             Self::Line(error) => write!(f, "the line to the controller is gone: {error}"),
             Self::Sender(error) => error.fmt(f),
             Self::Ended(ending) => ending.fmt(f),
+            Self::Homing => write!(f, "the machine still looks for home; look at it before you ask for more"),
         }
     }
 }
@@ -99,17 +105,22 @@ pub fn new_session() -> u32 {
     (RandomState::new().build_hasher().finish() as u32).max(1)
 }
 
-/// Sends a job and waits for its end. `look` sees what happens; `wish` is asked again and again for what a person wants.
+/// Sends a job in these coordinates and waits for its end. `look` sees what happens; `wish` is asked again and again for what a person wants.
 ///
 /// The transfer is told as far as it went, failed or not.
 pub fn stream(
     line: &mut dyn Transport,
     header: &Header<f32>,
     pieces: &[Piece<f32>],
+    coordinates: Coordinates,
     mut look: impl FnMut(Happening),
     mut wish: impl FnMut() -> Option<Wish>,
 ) -> (Transfer, Result<(), StreamError>) {
-    let mut sender = Sender::new(new_session(), header, pieces);
+    let sender = Sender::new(new_session(), header, pieces).in_coordinates(coordinates);
+    let mut sender = match line.baud() {
+        Some(baud) => sender.at_baud(baud),
+        None => sender,
+    };
     let mut transfer = Transfer { pieces: pieces.len() as u32, ..Transfer::default() };
     let outcome = converse(line, &mut sender, &mut transfer, &mut look, &mut wish);
     transfer.sent = sender.sent();
@@ -166,40 +177,6 @@ fn converse(
                     return Ok(());
                 }
             }
-        }
-    }
-}
-
-/// Asks for the status again and again, in no session: whoever sends a job meanwhile does not notice. Ends where `look` returns false.
-pub fn monitor(
-    line: &mut dyn Transport,
-    every: Duration,
-    mut look: impl FnMut(&Telemetry) -> bool,
-) -> Result<(), StreamError> {
-    /// A controller that is silent for so long is not there.
-    const PATIENCE: Duration = Duration::from_secs(2);
-    let mut decoder = Decoder::new();
-    let mut buffer = [0; 1024];
-    let (mut heard, mut asked) = (Instant::now(), None::<Instant>);
-    line.send(&[0])?;
-    loop {
-        if asked.is_none_or(|asked| asked.elapsed() >= every) {
-            asked = Some(Instant::now());
-            if let Some(frame) = encode(NO_SESSION, 0, &Command::Status) {
-                line.send(&frame)?;
-            }
-        }
-        let count = line.receive(&mut buffer)?;
-        for &byte in buffer.iter().take(count) {
-            let Some(Ok(said)) = decoder.push::<Report>(byte) else { continue };
-            heard = Instant::now();
-            match said.message {
-                Report::Telemetry(telemetry) if !look(&telemetry) => return Ok(()),
-                _ => {}
-            }
-        }
-        if heard.elapsed() > PATIENCE.max(2 * every) {
-            return Err(StreamError::Sender(SenderError::Lost { reason: None }));
         }
     }
 }

@@ -20,6 +20,10 @@ pub trait Transport {
     fn receive(&mut self, buffer: &mut [u8]) -> io::Result<usize>;
     /// Sends all of these.
     fn send(&mut self, bytes: &[u8]) -> io::Result<()>;
+    /// Its bits a second, where it is as slow as that; none where nothing is known.
+    fn baud(&self) -> Option<u32> {
+        None
+    }
 }
 
 /// Opens `port`: `tcp:HOST:PORT`, a serial port, or a file that is a line. `baud` is for a serial port alone.
@@ -96,6 +100,10 @@ impl Transport for Serial {
 
     fn send(&mut self, bytes: &[u8]) -> io::Result<()> {
         self.0.write_all(bytes)
+    }
+
+    fn baud(&self) -> Option<u32> {
+        self.0.baud_rate().ok()
     }
 }
 

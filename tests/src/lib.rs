@@ -7,7 +7,8 @@
 //! [`properties`] holds a trimmed offset against what must be true of it, [`expected`] against closed forms; [`winding`] and
 //! [`largest_disc`] serve these.
 //!
-//! For the link: [`noisy_line`] loses, doubles, reorders, damages and cuts frames.
+//! For the link: [`noisy_line`] loses, doubles, reorders, damages and cuts frames; [`link_script`] makes conversations of any bytes, and
+//! [`strict_machine`] stands behind the endpoint and trusts nothing that it is handed. The targets of `fuzz/` use both.
 #![forbid(unsafe_code)]
 
 pub mod bench;
@@ -16,6 +17,7 @@ pub mod contours;
 pub mod draft;
 pub mod expected;
 pub mod largest_disc;
+pub mod link_script;
 pub mod noisy_line;
 pub mod oracle;
 pub mod properties;
@@ -23,6 +25,7 @@ pub mod random;
 pub mod run;
 pub mod simple;
 pub mod stock;
+pub mod strict_machine;
 pub mod winding;
 
 pub use draft::Draft;

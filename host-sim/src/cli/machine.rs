@@ -1,45 +1,104 @@
-//! `hodograph machine`: checks a machine's file and shows what a controller will use of it.
+//! `hodograph machine`: checks a machine's file, shows what a controller will use of it, and brings it there and back.
 
 use std::io::{self, Write};
 
 use clap::Args;
+use host_sim::machine::transfer::{self, TransferError};
 use host_sim::machine::{self, DriveSummary, Summary};
+use host_sim::session::Session;
+use host_sim::transport;
 use host_sim::units::plain;
-use shared::machine::{End, HomeSwitch, HostLost};
+use shared::machine::{End, HomeSwitch, HostLost, MachineSettings};
 
 use super::Failure;
 use super::output::{failed, json, write};
 
-/// Check a machine's file, show what the controller will use of it, and write the image that the controller keeps
+/// Check a machine's file, show what the controller will use of it, and bring it to a controller or back
 #[derive(Args)]
-#[command(after_help = "Example:\n  hodograph machine examples/machine.toml -o router.image")]
+#[command(after_help = "Examples:
+  hodograph machine examples/machine.toml
+  hodograph machine examples/machine.toml --port tcp:localhost:4750 --write
+  hodograph machine --port tcp:localhost:4750 --read -o router.toml")]
 pub struct MachineVerb {
     /// The machine, in TOML
-    machine: String,
-    /// Write the image that the controller keeps; `-` is standard output
-    #[arg(short, long, value_name = "IMAGE")]
+    #[arg(required_unless_present = "read", conflicts_with = "read")]
+    machine: Option<String>,
+    /// Write the image that the controller keeps, or with --read the machine's file; `-` is standard output
+    #[arg(short, long, value_name = "FILE")]
     output: Option<String>,
     /// Write what the controller will use as JSON; `-` is standard output
     #[arg(long, value_name = "FILE")]
     json: Option<String>,
+    #[command(flatten)]
+    wire: Wire,
+}
+
+/// Where a controller is, and what is asked of it.
+#[derive(Args)]
+struct Wire {
+    /// The controller: a serial port, a file that is a line, or `tcp:HOST:PORT`
+    #[arg(long, requires = "direction")]
+    port: Option<String>,
+    /// Bits per second of a serial port
+    #[arg(long, default_value_t = 921_600)]
+    baud: u32,
+    /// Have the controller keep this machine
+    #[arg(long, requires = "port", group = "direction")]
+    write: bool,
+    /// Read the machine that the controller keeps
+    #[arg(long, requires = "port", group = "direction")]
+    read: bool,
 }
 
 impl MachineVerb {
     /// Reads, checks, shows and writes.
     pub fn run(self) -> Result<(), Failure> {
-        let settings = machine::read(&self.machine)?;
-        let image = machine::to_image(&settings).map_err(|error| failed(&self.machine, error))?;
+        let settings = match &self.machine {
+            Some(name) => machine::read(name)?,
+            None => self.wire.read()?,
+        };
+        let name = self.machine.as_deref().or(self.wire.port.as_deref()).unwrap_or_default();
+        let image = machine::to_image(&settings).map_err(|error| failed(name, error))?;
         let summary = Summary::new(&settings, image.len());
-        if let Some(name) = &self.output {
+        if self.wire.write {
+            self.wire.write(&image)?;
+        }
+        if self.wire.read {
+            let text = machine::to_toml(&settings).map_err(|error| failed(name, error))?;
+            write(self.output.as_deref().unwrap_or("-"), text.as_bytes())?;
+        } else if let Some(name) = &self.output {
             write(name, &image)?;
         }
         if let Some(name) = &self.json {
             json(name, &summary)?;
         }
-        if ![&self.json, &self.output].into_iter().any(|name| name.as_deref() == Some("-")) {
+        let silent = self.wire.read || [&self.json, &self.output].into_iter().any(|name| name.as_deref() == Some("-"));
+        if !silent {
             print(&mut io::stdout().lock(), &summary).map_err(|error| failed("standard output", error))?;
+            if self.wire.write {
+                println!("the controller keeps it");
+            }
         }
         Ok(())
+    }
+}
+
+impl Wire {
+    /// Speaks to the controller in a session.
+    fn speak<T>(&self, what: impl FnOnce(&mut Session<'_>) -> Result<T, TransferError>) -> Result<T, Failure> {
+        let port = self.port.as_deref().unwrap_or_default();
+        let mut line = transport::open(port, self.baud)?;
+        let outcome =
+            Session::open(&mut *line).map_err(TransferError::Stream).and_then(|mut session| what(&mut session));
+        outcome.map_err(|error| failed(port, error))
+    }
+
+    fn read(&self) -> Result<MachineSettings, Failure> {
+        self.speak(transfer::read)
+    }
+
+    fn write(&self, image: &[u8]) -> Result<(), Failure> {
+        self.speak(|session| transfer::write(session, image))
     }
 }
 

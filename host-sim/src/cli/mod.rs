@@ -1,5 +1,7 @@
 //! The command line: one module a verb, each a thin reader of a result that the library computes.
 
+mod act;
+mod keys;
 mod machine;
 mod monitor;
 mod motion;

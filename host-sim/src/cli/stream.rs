@@ -1,32 +1,38 @@
 //! `hodograph stream`: sends a job to a controller.
 
+use std::cell::RefCell;
 use std::fs::File;
-use std::io::{IsTerminal, Write};
-use std::time::{Duration, Instant};
+use std::io::Write;
+use std::time::Instant;
 
 use clap::Args;
-use crossterm::event::{self, Event, KeyCode, KeyEventKind, KeyModifiers};
-use crossterm::terminal::{disable_raw_mode, enable_raw_mode};
 use host_sim::input::InputError;
-use host_sim::stream::{Happening, Wish, stream};
+use host_sim::stream::{Happening, StreamError, Wish, stream};
 use host_sim::transport;
 use indicatif::ProgressBar;
-use shared::link::Action;
+use shared::link::{Action, Refusal, SenderError};
 use shared::motion::MotionCommand;
 use shared::piece::Piece;
+use shared::safety::{Coordinates, Refused, State};
 
 use super::Failure;
+use super::act::refused;
+use super::keys::{Keys, Press};
 use super::motion::Motion;
 use super::output::{failed, json};
 
 /// Send a job to a controller and run it, with progress
 ///
-/// On a terminal: h or space holds, r or space resumes, + and - change the override by 10 %, c cancels, q stops at once
+/// On a terminal: h or space holds, r or space resumes, + and - change the override by 10 %, b runs piece by piece or not, c cancels, g
+/// homes, a acknowledges a fault, q stops at once
 #[derive(Args)]
 #[command(after_help = "Example:\n  hodograph stream examples/farouki2018.toml --port tcp:localhost:4750 --json -")]
 pub struct Stream {
     #[command(flatten)]
     motion: Motion,
+    /// Run the job from where the machine stands; otherwise its coordinates are the machine's, every axis of which has to know where it is
+    #[arg(long)]
+    from_here: bool,
     /// The controller: a serial port, a file that is a line, or `tcp:HOST:PORT`
     #[arg(long)]
     port: String,
@@ -49,12 +55,18 @@ impl Stream {
         let mut log = Log::create(self.log.as_deref())?;
         let mut line = transport::open(&self.port, self.baud)?;
         let bar = super::progress_of(pieces.len() as u64, "{pos} of {len} pieces, {msg}");
-        let mut keys = Keys::new();
+        let coordinates = if self.from_here { Coordinates::Relative } else { Coordinates::Machine };
+        // One closure shows what the controller says, the other reads keys, which go on from it.
+        let keys = RefCell::new(Keys::new());
         let look = |happening| {
+            if let Happening::Progress(_, telemetry) = &happening {
+                keys.borrow_mut().percent_is(telemetry.percent);
+            }
             show(&bar, &happening);
             log.write(&happening);
         };
-        let (transfer, outcome) = stream(&mut *line, &path.header, &pieces, look, || keys.wish());
+        let (transfer, outcome) =
+            stream(&mut *line, &path.header, &pieces, coordinates, look, || wish(&mut keys.borrow_mut()));
         drop(keys);
         bar.finish_and_clear();
         log.end(&format!("{transfer:?} {outcome:?}")).map_err(|error| failed("--log", error))?;
@@ -65,7 +77,7 @@ impl Stream {
             return Err(if error.is_input() {
                 InputError::new(&self.port, error).into()
             } else {
-                Failure::Run(format!("{}: {error}", self.port))
+                Failure::Run(format!("{}: {error}{}", self.port, remedy(&error, &self.port)))
             });
         }
         if self.json.as_deref() != Some("-") {
@@ -78,6 +90,31 @@ impl Stream {
     }
 }
 
+/// What would help, where it is a command of this program.
+fn remedy(error: &StreamError, port: &str) -> String {
+    let StreamError::Sender(SenderError::Refused { reason, .. }) = error else { return String::new() };
+    match reason {
+        Refusal::Stopped
+        | Refusal::Fault(_)
+        | Refusal::Machine(Refused::State { state: State::Fault | State::EStop }) => {
+            format!(" (hodograph monitor --port {port} --act acknowledge)")
+        }
+        Refusal::Machine(Refused::PositionUnknown { .. }) => {
+            format!(" (hodograph monitor --port {port} --act home), or run it --from-here")
+        }
+        _ => String::new(),
+    }
+}
+
+fn wish(keys: &mut Keys) -> Option<Wish> {
+    Some(match keys.press()? {
+        Press::Act(action) => Wish::Act(action),
+        // Who presses ctrl-C wants rest, not a jolt.
+        Press::Interrupt => Wish::Act(Action::Motion(MotionCommand::Cancel)),
+        Press::Quit => Wish::Abort,
+    })
+}
+
 fn show(bar: &ProgressBar, happening: &Happening) {
     match happening {
         Happening::Hello(identity) => {
@@ -88,7 +125,7 @@ fn show(bar: &ProgressBar, happening: &Happening) {
             bar.set_position(u64::from(telemetry.pieces));
             bar.set_message(super::monitor::status(telemetry));
         }
-        Happening::Done(_, Err(reason)) => bar.suspend(|| eprintln!("refused: {reason}")),
+        Happening::Done(action, Err(reason)) => bar.suspend(|| eprintln!("{}\r", refused(action, reason))),
         Happening::Done(_, Ok(_)) => {}
     }
 }
@@ -119,88 +156,5 @@ impl Log {
     fn end(&mut self, line: &str) -> std::io::Result<()> {
         let time = self.start.elapsed().as_secs_f64();
         self.file.as_mut().map_or(Ok(()), |file| writeln!(file, "{time:10.3} {line}"))
-    }
-}
-
-/// The keyboard, where there is one; raw as long as this lives.
-struct Keys {
-    raw: bool,
-    held: bool,
-    percent: u8,
-}
-
-impl Keys {
-    fn new() -> Self {
-        let raw = std::io::stdin().is_terminal() && std::io::stderr().is_terminal() && enable_raw_mode().is_ok();
-        Self { raw, held: false, percent: 100 }
-    }
-
-    fn wish(&mut self) -> Option<Wish> {
-        if !self.raw || !event::poll(Duration::ZERO).unwrap_or(false) {
-            return None;
-        }
-        let Ok(Event::Key(key)) = event::read() else { return None };
-        if key.kind == KeyEventKind::Release {
-            return None;
-        }
-        let interrupted = key.code == KeyCode::Char('c') && key.modifiers.contains(KeyModifiers::CONTROL);
-        self.meaning(key.code, interrupted)
-    }
-
-    fn meaning(&mut self, key: KeyCode, interrupted: bool) -> Option<Wish> {
-        let command = match key {
-            // Who presses ctrl-C wants rest, not a jolt.
-            KeyCode::Char('c') | KeyCode::Char('C') => MotionCommand::Cancel,
-            _ if interrupted => MotionCommand::Cancel,
-            KeyCode::Char('q') => return Some(Wish::Abort),
-            KeyCode::Char('h') => self.hold(true),
-            KeyCode::Char('r') => self.hold(false),
-            KeyCode::Char(' ') => self.hold(!self.held),
-            KeyCode::Char('+') => self.change(self.percent.saturating_add(10)),
-            KeyCode::Char('-') => self.change(self.percent.saturating_sub(10)),
-            _ => return None,
-        };
-        Some(Wish::Act(Action::Motion(command)))
-    }
-
-    fn hold(&mut self, held: bool) -> MotionCommand {
-        self.held = held;
-        if held { MotionCommand::Hold } else { MotionCommand::Resume }
-    }
-
-    fn change(&mut self, percent: u8) -> MotionCommand {
-        self.percent = percent.clamp(10, 200);
-        MotionCommand::Override { percent: self.percent }
-    }
-}
-
-impl Drop for Keys {
-    fn drop(&mut self) {
-        if self.raw {
-            // Nothing better can be done with a terminal that is gone.
-            let _ = disable_raw_mode();
-        }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn keys_mean_what_the_help_says() {
-        let mut keys = Keys { raw: false, held: false, percent: 100 };
-        let mut press = |key| keys.meaning(KeyCode::Char(key), false);
-        let act = |command| Some(Wish::Act(Action::Motion(command)));
-        assert_eq!(press(' '), act(MotionCommand::Hold));
-        assert_eq!(press(' '), act(MotionCommand::Resume));
-        assert_eq!(press('+'), act(MotionCommand::Override { percent: 110 }));
-        assert_eq!(press('c'), act(MotionCommand::Cancel));
-        assert_eq!(press('q'), Some(Wish::Abort));
-        assert_eq!(press('x'), None);
-        for _ in 0..30 {
-            press('-');
-        }
-        assert_eq!(press('-'), act(MotionCommand::Override { percent: 10 }));
     }
 }

@@ -1,6 +1,7 @@
 //! A machine's file: `machine.toml`, read and checked as the controller will check it again.
 
 mod summary;
+pub mod transfer;
 
 use std::ops::Range;
 
@@ -19,6 +20,11 @@ pub fn read(name: &str) -> Result<MachineSettings, InputError> {
 /// Reads and checks a machine from a text that is at hand; `name` stands in errors.
 pub fn from_toml(name: &str, text: &str) -> Result<MachineSettings, InputError> {
     from_source(&Source { name: name.to_string(), text: text.to_string() })
+}
+
+/// The text of a machine's file.
+pub fn to_toml(settings: &MachineSettings) -> Result<String, toml::ser::Error> {
+    toml::to_string(settings)
 }
 
 /// The image that the controller keeps.
@@ -100,7 +106,7 @@ mod tests {
         let settings = from_toml("machine.toml", ROUTER).unwrap();
         assert_eq!(image::decode(&to_image(&settings).unwrap()), Ok(settings.clone()));
         assert_eq!(settings.axes.len(), 3);
-        let text = toml::to_string(&settings).unwrap();
+        let text = to_toml(&settings).unwrap();
         assert_eq!(from_toml("again", &text), Ok(settings), "it can be written as a file again");
     }
 

@@ -13,6 +13,7 @@ use crate::fixed::Fixed;
 use crate::loader::{Loader, Motion};
 use crate::motion::MotionCommand;
 use crate::piece::{Header, Piece};
+use crate::safety::Coordinates;
 
 /// Telemetry comes every so many ticks: 51 times a second.
 pub const TELEMETRY_TICKS: u32 = 20;
@@ -32,8 +33,9 @@ pub trait Machine {
     fn clear(&mut self);
     /// Puts a piece into the queue; false where it is full.
     fn push(&mut self, piece: ActivePiece<f32>) -> bool;
-    /// Begins the path whose first pieces stand in the queue, and whose first point this is.
-    fn start(&mut self, motion: &Motion<f32>, at: [Fixed; 2]) -> Result<(), Refusal>;
+    /// Begins the path whose first pieces stand in the queue, in these coordinates, in which `at` is its first point. Errors: why not;
+    /// nothing moves then.
+    fn start(&mut self, motion: &Motion<f32>, coordinates: Coordinates, at: [Fixed; 2]) -> Result<(), Refusal>;
     /// Stops at once and empties the queue.
     fn stop(&mut self);
     /// Carries out an action, whose numbers are in range.
@@ -84,6 +86,8 @@ enum Job {
     Running(Loader<f32>),
     /// Started, and coming to rest because a piece of it was refused.
     Leaving,
+    /// Started by a host that has vanished, and left to another one: no more pieces come, and its end is nobody's. Actions go on.
+    Orphan,
     /// Over; said again to whoever asks.
     Ended(End),
 }
@@ -94,6 +98,8 @@ pub struct Endpoint {
     decoder: Decoder,
     receiver: Receiver,
     job: Job,
+    /// The first command of the session that was refused, and why; said again to whoever asks.
+    refused: Option<(u16, Refusal)>,
     /// What came of the last action.
     outcome: Result<Answer, Refusal>,
     /// Reports are numbered too, so that a trace shows what was missed.
@@ -118,6 +124,7 @@ impl Endpoint {
             decoder: Decoder::new(),
             receiver: Receiver::new(),
             job: Job::None,
+            refused: None,
             outcome: Ok(Answer::Done),
             report_number: 0,
             reported_at: 0,
@@ -145,7 +152,10 @@ impl Endpoint {
             }
             Turn::Take(sequence, command) => match self.obey(machine, command) {
                 Ok(()) => self.acknowledge(machine),
-                Err(reason) => self.send(machine, &Report::Refused { sequence, reason }),
+                Err(reason) => {
+                    self.refused = self.refused.or(Some((sequence, reason)));
+                    self.send(machine, &Report::Refused { sequence, reason });
+                }
             },
             Turn::Repeated => self.acknowledge(machine),
             Turn::RepeatedAction(number) => self.send(machine, &Report::Done { number, outcome: self.outcome }),
@@ -166,6 +176,9 @@ impl Endpoint {
             self.telemetry(machine, now, self.receiver.session());
             self.send(machine, &end.into());
         }
+        if matches!(self.job, Job::Orphan) && machine.end().is_some() {
+            self.job = Job::None;
+        }
         if let Job::Running(loader) = &self.job {
             // One acknowledgement for several pieces of new room: each is a frame that the line has to carry.
             let worth_telling = (machine.identity().capacity / 4).max(1);
@@ -177,7 +190,7 @@ impl Endpoint {
         if silent && !self.vanished {
             self.vanished = true;
             match self.job {
-                Job::Running(_) => machine.host_vanished(),
+                Job::Running(_) | Job::Orphan => machine.host_vanished(),
                 // What was loaded and never started belongs to nobody.
                 Job::Loading(_) => self.drop_job(machine),
                 Job::None | Job::Leaving | Job::Ended(_) => {}
@@ -198,12 +211,17 @@ impl Endpoint {
         let outcome = match &self.job {
             _ if version != VERSION => Err(Refusal::Version { version: VERSION }),
             _ if session == self.receiver.session() => Ok(()),
-            Job::Running(_) | Job::Leaving => Err(Refusal::Busy),
-            _ => {
-                self.drop_job(machine);
+            Job::Running(_) | Job::Leaving | Job::Orphan if !self.vanished => Err(Refusal::Busy),
+            job => {
+                // A motion whose host has vanished is left to the next one, to be resumed or cancelled.
+                if matches!(job, Job::Running(_) | Job::Leaving | Job::Orphan) {
+                    self.job = Job::Orphan;
+                } else {
+                    self.drop_job(machine);
+                }
                 self.receiver.open(session);
                 self.decoder.enter(session);
-                self.outcome = Ok(Answer::Done);
+                (self.refused, self.outcome) = (None, Ok(Answer::Done));
                 Ok(())
             }
         };
@@ -227,18 +245,21 @@ impl Endpoint {
         if let Job::Ended(end) = self.job {
             self.send(machine, &end.into());
         }
+        if let Some((sequence, reason)) = self.refused {
+            self.send(machine, &Report::Refused { sequence, reason });
+        }
     }
 
     fn obey(&mut self, machine: &mut impl Machine, command: Command) -> Result<(), Refusal> {
         match command {
             Command::Begin(header) => self.begin(machine, &header),
             Command::Piece(piece) => self.load(machine, &piece),
-            Command::Run => self.run(machine),
+            Command::Run(coordinates) => self.run(machine, coordinates),
             Command::Abort => {
                 machine.stop();
                 self.job = match self.job {
                     Job::Loading(_) | Job::Running(_) | Job::Leaving => Job::Ended(End::Early(Ending::Stopped)),
-                    Job::None => Job::None,
+                    Job::None | Job::Orphan => Job::None,
                     Job::Ended(end) => Job::Ended(end),
                 };
                 Ok(())
@@ -264,6 +285,7 @@ impl Endpoint {
     fn load(&mut self, machine: &mut impl Machine, piece: &Piece<f32>) -> Result<(), Refusal> {
         let loader = match &mut self.job {
             Job::None => return Err(Refusal::NoJob),
+            Job::Orphan => return Err(Refusal::Busy),
             // It ended while the piece was on its way, and that has been told.
             Job::Leaving | Job::Ended(_) => return Ok(()),
             Job::Loading(loader) | Job::Running(loader) => loader,
@@ -279,7 +301,7 @@ impl Endpoint {
         outcome
     }
 
-    fn run(&mut self, machine: &mut impl Machine) -> Result<(), Refusal> {
+    fn run(&mut self, machine: &mut impl Machine, coordinates: Coordinates) -> Result<(), Refusal> {
         machine.ready()?;
         match core::mem::replace(&mut self.job, Job::None) {
             Job::None => Err(Refusal::NoJob),
@@ -287,13 +309,13 @@ impl Endpoint {
                 self.job = job;
                 Ok(())
             }
-            job @ Job::Running(_) => {
+            job @ (Job::Running(_) | Job::Orphan) => {
                 self.job = job;
                 Err(Refusal::Busy)
             }
             Job::Loading(loader) => {
                 let Some(at) = loader.start() else { return Err(Refusal::Path(PathError::Empty)) };
-                machine.start(&loader.motion(), at)?;
+                machine.start(&loader.motion(), coordinates, at)?;
                 self.job = Job::Running(loader);
                 Ok(())
             }
@@ -304,7 +326,7 @@ impl Endpoint {
         let mut leaves = || machine.act(Action::Motion(MotionCommand::Cancel)).is_ok();
         self.job = match &self.job {
             Job::Running(_) if leaves() => Job::Leaving,
-            Job::Loading(_) | Job::Running(_) | Job::Leaving => {
+            Job::Loading(_) | Job::Running(_) | Job::Leaving | Job::Orphan => {
                 machine.stop();
                 Job::None
             }

@@ -7,6 +7,9 @@
 //! there [Koopman, CRC polynomial zoo]), and every burst of up to 32 bits; the longest body here is 1280 bits, which is why a
 //! frame holds one piece and not several. An error that makes or unmakes a zero moves the ends of frames, and COBS spreads it over
 //! the body: such a frame passes once in 2^32. At one broken frame a second that is once in 136 years.
+//!
+//! What is found is that a frame is none of the session. An error that looks like the session's number makes it one of no session, where a
+//! controller takes `Hello` and `Status` alone, and a host that is in a session takes nothing.
 
 use core::fmt;
 
@@ -25,6 +28,8 @@ pub const FRAME_SIZE: usize = cobs::max_encoding_length(BODY_SIZE) + 1;
 pub type Frame = Vec<u8, FRAME_SIZE>;
 
 const CRC_SIZE: usize = 4;
+// The sender counts the length of a frame in a byte.
+const _: () = assert!(FRAME_SIZE <= u8::MAX as usize);
 const CRC: Crc<u32> = Crc::<u32>::new(&CRC_32_ISO_HDLC);
 
 /// Why bytes are no frame.
@@ -159,6 +164,7 @@ mod tests {
     use crate::fixed::Fixed;
     use crate::further::Travel;
     use crate::piece::{Piece, Shape};
+    use crate::safety::{Coordinates, Fault, HomingFault, State};
 
     fn piece(x: f32, origin: i32) -> Piece<f32> {
         let w = Complex::new(x, -x);
@@ -175,6 +181,7 @@ mod tests {
     }
 
     const SESSION: u32 = 0x5eed_1234;
+    const RUN: Command = Command::Run(Coordinates::Machine);
 
     fn decoder() -> Decoder {
         let mut decoder = Decoder::new();
@@ -193,12 +200,16 @@ mod tests {
         let frame = encode(SESSION, u16::MAX, &Command::Piece(piece(f32::MAX, i32::MAX))).unwrap();
         assert!(frame.len() < FRAME_SIZE);
         let telemetry = Telemetry {
+            machine: State::EStop,
+            fault: Some(Fault::Homing { axis: u8::MAX, fault: HomingFault::Stuck }),
+            axes: u8::MAX,
+            known: u8::MAX,
             tick: u32::MAX,
             pieces: u32::MAX,
             setpoint: [Fixed(i32::MIN); 3],
+            actual: [Fixed(i32::MIN); 3],
             speed: f32::MAX,
             percent: u8::MAX,
-            fault: u8::MAX,
             queued: u16::MAX,
             next: u16::MAX,
             room: u16::MAX,
@@ -222,22 +233,41 @@ mod tests {
     fn an_oversized_frame_is_refused_and_the_next_one_read() {
         let mut bytes = std::vec![7; 3 * FRAME_SIZE];
         bytes.push(0);
-        bytes.extend(encode(SESSION, 5, &Command::Run).unwrap());
+        bytes.extend(encode(SESSION, 5, &RUN).unwrap());
         let found = decode(&mut decoder(), &bytes);
-        assert_eq!(found, [Err(FrameError::Oversized), Ok((5, Command::Run))]);
+        assert_eq!(found, [Err(FrameError::Oversized), Ok((5, RUN))]);
     }
 
     /// What was said in another session is not taken for this one's, whatever it is; what was said in none is told apart.
     #[test]
     fn a_frame_of_another_session_is_no_frame() {
         for other in [1, SESSION ^ 1, !SESSION, u32::MAX] {
-            let frame = super::encode(other, 5, &Command::Run).unwrap();
+            let frame = super::encode(other, 5, &RUN).unwrap();
             assert_eq!(decode(&mut decoder(), &frame), [Err(FrameError::Corrupted)]);
         }
         let frame = super::encode(NO_SESSION, 5, &Command::Status).unwrap();
         let mut decoder = decoder();
         let found: Option<Result<Received<Command>, _>> = frame.iter().find_map(|&byte| decoder.push(byte));
         assert_eq!(found, Some(Ok(Received { session: NO_SESSION, sequence: 5, message: Command::Status })));
+    }
+
+    /// `Hello`, its answer and the refusal of a version have the form that they had in version 3, byte by byte: otherwise two versions
+    /// could not tell each other that they are two.
+    #[test]
+    fn what_versions_say_to_each_other_keeps_its_form() {
+        use super::super::message::Identity;
+        let form = |frame: Frame| {
+            let mut bytes = frame.to_vec();
+            let length = cobs::decode_in_place(&mut bytes[..frame.len() - 1]).unwrap() - CRC_SIZE;
+            bytes[..length].to_vec()
+        };
+        let hello = Command::Hello { version: 4, session: 300 };
+        assert_eq!(form(encode(NO_SESSION, 0, &hello).unwrap()), [0, 0, 4, 0xac, 2]);
+        let identity = Identity { firmware: [1, 2, 3], axes: 5, capacity: 63 };
+        let answer = Report::Hello { version: 4, session: 300, identity };
+        assert_eq!(form(encode(NO_SESSION, 9, &answer).unwrap()), [9, 0, 4, 0xac, 2, 1, 2, 3, 5, 63]);
+        let refused = Report::Refused { sequence: 0, reason: Refusal::Version { version: 4 } };
+        assert_eq!(form(encode(NO_SESSION, 9, &refused).unwrap()), [9, 2, 0, 2, 4]);
     }
 
     #[test]
@@ -264,7 +294,7 @@ mod tests {
         /// is read: a CRC-32 finds every burst of up to 32 bits.
         #[test]
         fn damage_is_found_and_forgotten(x in -1e3_f32..1e3, at in 0_usize..90, change in 1_u8.., kind in 0..3) {
-            let good = encode(SESSION, 8, &Command::Run).unwrap();
+            let good = encode(SESSION, 8, &RUN).unwrap();
             let mut bytes = encode(SESSION, 7, &Command::Piece(piece(x, 1))).unwrap().to_vec();
             let at = at.min(bytes.len() - 2);
             match kind {
@@ -275,7 +305,7 @@ mod tests {
             // A zero in the middle cuts the frame in two: both halves are faulty.
             bytes.extend(&good);
             let found = decode(&mut decoder(), &bytes);
-            prop_assert_eq!(found.last(), Some(&Ok((8, Command::Run))));
+            prop_assert_eq!(found.last(), Some(&Ok((8, RUN))));
             prop_assert!(found[..found.len() - 1].iter().all(Result::is_err));
         }
 

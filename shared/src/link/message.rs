@@ -10,11 +10,12 @@ use crate::error::PathError;
 use crate::fixed::Position;
 use crate::motion::{CommandError, State};
 use crate::piece::{Header, Piece};
+use crate::safety::{self, Coordinates, Fault, Refused};
 
 /// The version of everything that is said. A controller speaks to hosts of the same version only.
 ///
 /// `Hello`, its answer and [`Refusal::Version`] keep their form in every version from 3 on, so that two versions can say so.
-pub const VERSION: u16 = 3;
+pub const VERSION: u16 = 4;
 
 /// From the host to the controller.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -32,11 +33,11 @@ pub enum Command {
     Begin(Header<f32>),
     /// The next piece of the job.
     Piece(Piece<f32>),
-    /// Starts the motion. More pieces may follow while it runs.
-    Run,
+    /// Starts the motion of a job in these coordinates. More pieces may follow while it runs.
+    Run(Coordinates),
     /// Stops the motion where it is and forgets the job. Taken out of sequence.
     Abort,
-    /// Asks for a [`Telemetry`], and for the end of a job that has ended. Taken out of sequence, and in no session too: then it is
+    /// Asks for a [`Telemetry`], and for the end of a job that has ended or the refusal of one that was refused. Taken out of sequence, and in no session too: then it is
     /// answered in none, and the session of somebody else does not notice. A host that has nothing to say says this, to be heard.
     Status,
     /// Asks for something beside the job. Numbered apart from the rest, from 0.
@@ -112,8 +113,8 @@ pub enum Ending {
     Cancelled,
     /// By the emergency stop, or by [`Command::Abort`].
     Stopped,
-    /// By a fault of the machine, of this number.
-    Fault(u8),
+    /// By this fault of the machine.
+    Fault(Fault),
 }
 
 /// Why a command was not taken.
@@ -137,8 +138,8 @@ pub enum Refusal {
     Full,
     /// The emergency stop is pressed.
     Stopped,
-    /// The machine has a fault, of this number; it has to be acknowledged first.
-    Fault(u8),
+    /// The machine has this fault; it has to be acknowledged first.
+    Fault(Fault),
     /// The motion does not allow it.
     Motion(CommandError),
     /// A number is outside its range.
@@ -147,6 +148,8 @@ pub enum Refusal {
     Unsupported,
     /// The configuration image is not whole, or not one.
     Image,
+    /// The machine does not allow it as it is.
+    Machine(Refused),
 }
 
 /// Why a frame was not even read as a command.
@@ -232,24 +235,32 @@ impl From<State> for MotionState {
     }
 }
 
-/// How it goes, at one tick.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+/// How it goes, at one tick. Bit k of a set of axes is axis k.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Telemetry {
     /// What the controller is doing.
     pub state: MotionState,
+    /// In which state the machine is.
+    pub machine: safety::State,
+    /// What is wrong, until it is acknowledged.
+    pub fault: Option<Fault>,
+    /// The axes that there are.
+    pub axes: u8,
+    /// Those whose position is known.
+    pub known: u8,
     /// Ticks of this job so far.
     pub tick: u32,
     /// Pieces of this job that the tick has taken from the queue.
     pub pieces: u32,
     /// The commanded position.
     pub setpoint: Position,
+    /// The position that the encoders show; that of an axis without one is its setpoint.
+    pub actual: Position,
     /// The magnitude of the commanded velocity in mm/s, good to 6 %: for people, not for geometry.
     pub speed: f32,
     /// The override in per cent.
     pub percent: u8,
-    /// The fault's number; 0 where there is none.
-    pub fault: u8,
     /// Pieces in the queue.
     pub queued: u16,
     /// The next expected sequence number, as an acknowledgement says it: a lost one is made good within two hundredths of a second.
@@ -264,6 +275,40 @@ pub struct Telemetry {
     pub stack: u32,
     /// Frames that did not arrive whole since the controller started.
     pub broken_frames: u32,
+}
+
+impl Telemetry {
+    /// The axes that there are and whose position is not known, from 0.
+    pub fn unknown_axes(&self) -> impl Iterator<Item = u8> {
+        let unknown = self.axes & !self.known;
+        (0..8).filter(move |axis| unknown & (1 << axis) != 0)
+    }
+}
+
+/// At rest at zero, with nothing wrong and no axis.
+impl Default for Telemetry {
+    fn default() -> Self {
+        Self {
+            state: MotionState::Idle,
+            machine: safety::State::Idle,
+            fault: None,
+            axes: 0,
+            known: 0,
+            tick: 0,
+            pieces: 0,
+            setpoint: Position::default(),
+            actual: Position::default(),
+            speed: 0.0,
+            percent: 0,
+            queued: 0,
+            next: 0,
+            room: 0,
+            cycles: 0,
+            worst_cycles: 0,
+            stack: 0,
+            broken_frames: 0,
+        }
+    }
 }
 
 impl fmt::Display for Refusal {
@@ -281,11 +326,12 @@ impl fmt::Display for Refusal {
             Self::Busy => write!(f, "the controller is running a job; wait for its end or stop it first"),
             Self::Full => write!(f, "the controller's queue is full; send no more pieces than it has room for"),
             Self::Stopped => write!(f, "the emergency stop is pressed; release it first"),
-            Self::Fault(number) => write!(f, "the controller has fault {number}; mend its cause and acknowledge it"),
+            Self::Fault(fault) => write!(f, "{fault}; mend its cause and acknowledge it"),
             Self::Motion(error) => error.fmt(f),
             Self::Range => write!(f, "a number is outside its range; an override is 1 to 200 %"),
             Self::Unsupported => write!(f, "this controller cannot do that"),
             Self::Image => write!(f, "the configuration did not arrive whole; write it again"),
+            Self::Machine(refused) => refused.fmt(f),
         }
     }
 }
@@ -304,7 +350,7 @@ impl fmt::Display for Ending {
         match self {
             Self::Cancelled => write!(f, "the job was cancelled; the machine rests on its path"),
             Self::Stopped => write!(f, "the job was stopped; the machine rests where it was"),
-            Self::Fault(number) => write!(f, "the job ended with fault {number} of the controller"),
+            Self::Fault(fault) => write!(f, "the job ended where it was, because {fault}"),
         }
     }
 }

@@ -11,10 +11,14 @@
 //! | [`receiver`] | the controller's half of the sequence: the next expected command and no other is taken |
 //! | [`endpoint`] | the controller's end: obeys commands through a [`Machine`], reports, and sees a host vanish |
 //! | [`sender`] | the host's end: a window of commands in flight, going back where one was lost |
+//! | [`event`] | what a host learns of its conversation |
 //!
 //! The rules.
 //! - `Hello` opens a session, whose number is in the CRC of every frame: nothing that was said in another one is ever taken, and a late
 //!   copy of the `Hello` itself changes nothing. A session has one job at most.
+//! - While a host is heard whose job is in motion, no other session is opened. Once it has vanished, the motion is left to the next host,
+//!   which may resume, cancel or abort it, and begins no job of its own before.
+//! - A job says in which coordinates it is. One in those of the machine is refused while the position of an axis is unknown.
 //! - The commands of a job carry a sequence number. The controller takes the next expected one only; a repeated one is acknowledged
 //!   and not executed; after a gap or a broken frame it says which one it expects, and the sender goes back to it. An
 //!   acknowledgement carries the room in the queue of pieces, and the sender never has more pieces in flight than that.
@@ -26,6 +30,7 @@
 
 pub mod action;
 pub mod endpoint;
+pub mod event;
 pub mod frame;
 pub mod message;
 pub mod receiver;
@@ -34,7 +39,8 @@ mod view;
 
 pub use action::{Action, Answer, Chunk};
 pub use endpoint::{End, Endpoint, Machine};
+pub use event::{Event, SenderError};
 pub use frame::{Decoder, FRAME_SIZE, Frame, FrameError, NO_SESSION, Received, encode};
 pub use message::{Command, Ending, Identity, LinkError, MotionState, Refusal, Report, Telemetry, VERSION};
 pub use receiver::{Receiver, Turn};
-pub use sender::{Event, Sender, SenderError};
+pub use sender::Sender;

@@ -59,7 +59,7 @@ impl Receiver {
             _ if session == NO_SESSION => return Turn::Ignore,
             Command::Abort => return Turn::Take(sequence, command),
             Command::Act(_) => return self.action(sequence, command),
-            Command::Begin(_) | Command::Piece(_) | Command::Run => {}
+            Command::Begin(_) | Command::Piece(_) | Command::Run(_) => {}
         }
         match sequence.wrapping_sub(self.next) {
             0 => {
@@ -86,8 +86,10 @@ impl Receiver {
 mod tests {
     use super::super::action::Action;
     use super::*;
+    use crate::safety::Coordinates;
 
     const SESSION: u32 = 77;
+    const RUN: Command = Command::Run(Coordinates::Machine);
 
     fn said(session: u32, sequence: u16, message: Command) -> Result<Received<Command>, FrameError> {
         Ok(Received { session, sequence, message })
@@ -98,9 +100,9 @@ mod tests {
         let mut receiver = Receiver::new();
         receiver.open(SESSION);
         let mut turn = |sequence, command| receiver.turn(said(SESSION, sequence, command));
-        assert_eq!(turn(1, Command::Run), Turn::Take(1, Command::Run));
-        assert_eq!(turn(1, Command::Run), Turn::Repeated);
-        assert_eq!(turn(3, Command::Run), Turn::Refuse(LinkError::Gap { found: 3 }));
+        assert_eq!(turn(1, RUN), Turn::Take(1, RUN));
+        assert_eq!(turn(1, RUN), Turn::Repeated);
+        assert_eq!(turn(3, RUN), Turn::Refuse(LinkError::Gap { found: 3 }));
         assert_eq!(turn(9, Command::Status), Turn::Take(9, Command::Status));
         assert_eq!(receiver.turn(Err(FrameError::Corrupted)), Turn::Refuse(LinkError::Frame(FrameError::Corrupted)));
         assert_eq!(receiver.next(), 2);
@@ -123,7 +125,7 @@ mod tests {
     #[test]
     fn in_no_session_one_may_only_look() {
         let mut receiver = Receiver::new();
-        for command in [Command::Run, Command::Abort, Command::Act(Action::Home)] {
+        for command in [RUN, Command::Abort, Command::Act(Action::Home)] {
             assert_eq!(receiver.turn(said(NO_SESSION, 0, command)), Turn::Ignore);
         }
         assert_eq!(receiver.turn(said(NO_SESSION, 0, Command::Status)), Turn::Take(0, Command::Status));

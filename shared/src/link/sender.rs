@@ -8,21 +8,32 @@
 //! A job becomes a script of commands, numbered from 0: `Hello`, `Begin`, as many pieces as the queue holds, `Run`, and the pieces
 //! that are left. So a job that fits into the queue is refused as a whole before anything moves.
 
-use core::fmt;
-
 use heapless::Deque;
 
-use super::action::{Action, Answer};
-use super::frame::{Decoder, Frame, NO_SESSION, encode};
-use super::message::{Command, Ending, Identity, Refusal, Report, Telemetry, VERSION};
+use super::action::Action;
+use super::event::{Event, SenderError};
+use super::frame::{Decoder, FRAME_SIZE, Frame, NO_SESSION, encode};
+use super::message::{Command, Refusal, Report, VERSION};
 use crate::piece::{Header, Piece};
+use crate::safety::Coordinates;
 
-/// Commands in flight at a time, about half a kilobyte: less than the controller's buffer of received bytes.
-pub const WINDOW: u32 = 6;
+/// Bytes that a controller can hold before its endpoint looks at them; it discards none.
+pub const RECEIVE_SIZE: usize = 2_048;
 
-/// A command that was not acknowledged for so long is sent again, in microseconds. A full window takes 50 ms at 115 200 baud, and a USB adapter
-/// may keep an answer for 16 ms.
-pub const TIMEOUT_US: u64 = 120_000;
+/// Bytes of a job in flight at a time: what the controller can hold, less a longest frame for an action and one for a sign of life. At
+/// 1 Mbaud that keeps the line busy for 18 ms, and a USB adapter that takes 16 ms each way still lets 600 pieces of 62 to 84 bytes through
+/// in a second (`tests/tests/link_speed.rs`).
+pub const WINDOW: usize = RECEIVE_SIZE - FRAME_SIZE - 16;
+
+/// A slow line gets so much at a time, in microseconds: what was sent before a fault was heard of delays all that is sent again.
+const WINDOW_US: u64 = 50_000;
+
+/// Commands in flight at a time, however short: as many as the firmware's queue holds pieces, and `Begin`.
+const MOST_IN_FLIGHT: usize = 64;
+
+/// A command that was not acknowledged for so long is sent again, in microseconds. A window that was in vain and the one behind it take
+/// 50 ms each on a slow line, and a USB adapter may keep each way for 16 ms.
+pub const TIMEOUT_US: u64 = 150_000;
 
 /// A host that has nothing to say asks for the status after so long, in microseconds, so that the controller knows it is there.
 pub const SIGN_OF_LIFE_US: u64 = 250_000;
@@ -30,7 +41,8 @@ pub const SIGN_OF_LIFE_US: u64 = 250_000;
 /// Actions that may wait for their turn.
 pub const ACTIONS: usize = 8;
 
-/// A command is sent so many times before the sender gives up.
+/// A command is sent so many times before the sender gives up. Where a third of all questions stay without an answer, that happens by chance
+/// once in 6e4.
 pub const TRIES: u32 = 10;
 
 /// Sends one job. See the module.
@@ -39,7 +51,11 @@ pub struct Sender<'a> {
     session: u32,
     header: Option<&'a Header<f32>>,
     pieces: &'a [Piece<f32>],
+    coordinates: Coordinates,
     decoder: Decoder,
+    /// Bytes of the job that may be in flight, and the frames that are: those from `acknowledged` to `next`.
+    window: usize,
+    in_flight: Deque<u8, MOST_IN_FLIGHT>,
     actions: Deque<Action, ACTIONS>,
     /// The number of the first of them, when it was sent, and how often.
     action_number: u16,
@@ -66,60 +82,6 @@ pub struct Sender<'a> {
     last_refusal: Option<Refusal>,
 }
 
-/// What the controller said, as far as a caller is concerned.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Event {
-    /// The conversation has begun; this is the controller.
-    Hello(Identity),
-    /// How it goes.
-    Telemetry(Telemetry),
-    /// The job is done.
-    Finished {
-        /// Ticks of the job.
-        ticks: u32,
-        /// Time left in the last tick, in s.
-        residual: f32,
-        /// The hash of all setpoints.
-        hash: u64,
-    },
-    /// The job has ended before its last point.
-    Ended(Ending),
-    /// An action was carried out, or refused.
-    Done(Action, Result<Answer, Refusal>),
-    /// The job was refused; [`Sender::error`] says why.
-    Failed(SenderError),
-}
-
-/// Why a job cannot be sent.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum SenderError {
-    /// The controller refused it.
-    Refused {
-        /// The piece that it refused, counted from 0; none if it was not a piece.
-        piece: Option<u32>,
-        /// Why.
-        reason: Refusal,
-    },
-    /// No frame came through in [`TRIES`] tries.
-    Lost {
-        /// What the controller said of the frames, if it said anything.
-        reason: Option<Refusal>,
-    },
-}
-
-impl fmt::Display for SenderError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Refused { piece: Some(piece), reason } => write!(f, "the controller refused piece {piece}: {reason}"),
-            Self::Refused { piece: None, reason } => write!(f, "the controller refused the job: {reason}"),
-            Self::Lost { reason: Some(reason) } => write!(f, "no frame came through in {TRIES} tries: {reason}"),
-            Self::Lost { reason: None } => write!(f, "the controller does not answer; check the port and its power"),
-        }
-    }
-}
-
-impl core::error::Error for SenderError {}
-
 impl<'a> Sender<'a> {
     /// A sender of the job of `header` and `pieces`, in a session of this number, which was not used lately.
     pub fn new(session: u32, header: &'a Header<f32>, pieces: &'a [Piece<f32>]) -> Self {
@@ -136,7 +98,10 @@ impl<'a> Sender<'a> {
             session,
             header: None,
             pieces: &[],
+            coordinates: Coordinates::Machine,
             decoder,
+            window: WINDOW,
+            in_flight: Deque::new(),
             actions: Deque::new(),
             action_number: 0,
             action_sent_us: None,
@@ -155,6 +120,17 @@ impl<'a> Sender<'a> {
             error: None,
             last_refusal: None,
         }
+    }
+
+    /// The same with the job in these coordinates, and not in those of the machine.
+    pub fn in_coordinates(self, coordinates: Coordinates) -> Self {
+        Self { coordinates, ..self }
+    }
+
+    /// The same over a line of so many bits a second, ten for a byte.
+    pub fn at_baud(self, baud: u32) -> Self {
+        let bytes = u64::from(baud) / 10 * WINDOW_US / 1_000_000;
+        Self { window: usize::try_from(bytes).unwrap_or(WINDOW).clamp(FRAME_SIZE, WINDOW), ..self }
     }
 
     /// Asks for an action; false where too many wait already.
@@ -214,18 +190,26 @@ impl<'a> Sender<'a> {
     /// The next command of the job, where window and room allow it.
     fn script(&mut self, now_us: u64) -> Option<Frame> {
         let command = self.command(self.next)?;
-        if self.next - self.acknowledged >= WINDOW || self.pieces_before(self.next + 1) > self.allowed {
+        if matches!(command, Command::Run(_)) && self.acknowledged < self.next {
+            // Nothing starts before all that is to be there has been taken: a refused piece is heard of first.
+            return None;
+        }
+        let in_flight: usize = self.in_flight.iter().map(|&length| usize::from(length)).sum();
+        if in_flight >= self.window || self.pieces_before(self.next + 1) > self.allowed {
+            return None;
+        }
+        let session = if self.next == 0 { NO_SESSION } else { self.session };
+        let frame = encode(session, self.next as u16, &command)?;
+        if in_flight + frame.len() > self.window || self.in_flight.push_back(frame.len() as u8).is_err() {
             return None;
         }
         if self.sent == self.acknowledged {
             // Nothing was on its way: the wait begins now.
             self.heard_us = now_us;
         }
-        let session = if self.next == 0 { NO_SESSION } else { self.session };
-        let frame = encode(session, self.next as u16, &command);
         self.next += 1;
         self.sent = self.sent.max(self.next);
-        frame
+        Some(frame)
     }
 
     /// Takes one received byte.
@@ -336,6 +320,11 @@ impl<'a> Sender<'a> {
             return;
         }
         self.acknowledged += progress;
+        for _ in 0..progress {
+            if self.in_flight.pop_front().is_none() {
+                break;
+            }
+        }
         self.next = self.next.max(self.acknowledged);
         self.allowed = self.allowed.max(self.pieces_before(self.acknowledged) + u32::from(room));
         if progress > 0 || self.acknowledged == self.sent {
@@ -347,6 +336,7 @@ impl<'a> Sender<'a> {
         self.back = Some(self.acknowledged);
         self.resent += self.next - self.acknowledged;
         self.next = self.acknowledged;
+        self.in_flight.clear();
     }
 
     fn fail(&mut self, piece: Option<u32>, reason: Refusal) -> Event {
@@ -369,7 +359,7 @@ impl<'a> Sender<'a> {
         let run = self.run_index();
         match index {
             1 => Some(Command::Begin(*header)),
-            _ if index == run => Some(Command::Run),
+            _ if index == run => Some(Command::Run(self.coordinates)),
             _ => self.pieces.get(self.pieces_before(index) as usize).copied().map(Command::Piece),
         }
     }

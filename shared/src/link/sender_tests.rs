@@ -7,6 +7,7 @@ use self::std::vec::Vec;
 
 use proptest::prelude::*;
 
+use super::super::message::Identity;
 use super::super::receiver::{Receiver, Turn};
 use super::*;
 use crate::complex::Complex;
@@ -75,7 +76,7 @@ impl Model {
                 ack(self)
             }
             Turn::Take(_, command) => {
-                self.running |= command == Command::Run;
+                self.running |= matches!(command, Command::Run(_));
                 ack(self)
             }
             Turn::Repeated | Turn::RepeatedAction(_) | Turn::Ignore => ack(self),
