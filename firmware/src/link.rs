@@ -3,10 +3,9 @@
 use heapless::spsc::{Consumer, Producer};
 use shared::active::ActivePiece;
 use shared::control::{Directive, PathEnd, Start};
-use shared::fixed::Fixed;
 use shared::link::frame::checksum;
 use shared::link::{Action, Answer, Chunk, End, Endpoint, Frame, Identity, Machine as Peer, Refusal, Telemetry};
-use shared::loader::Motion;
+use shared::loader::Bounds;
 use shared::machine::image::{IMAGE_SIZE, Image};
 use shared::machine::{HostLost, Machine};
 use shared::motion::MotionCommand;
@@ -19,8 +18,8 @@ use crate::mailbox::MAILBOX;
 use crate::telemetry::Reporter;
 use crate::{kept, restart};
 
-/// Received bytes that may wait for the link: more than the sender's window.
-pub const RX_BYTES: usize = 2048;
+/// Received bytes that may wait for the link: what a sender counts on.
+pub const RX_BYTES: usize = shared::link::sender::RECEIVE_SIZE;
 
 /// Bytes that may wait for the line.
 pub const TX_BYTES: usize = 1024;
@@ -151,7 +150,7 @@ impl Peer for Queues {
     }
 
     fn ready(&self) -> Result<(), Refusal> {
-        Ok(())
+        MAILBOX.read().fault.map_or(Ok(()), |fault| Err(Refusal::Fault(fault)))
     }
 
     fn clear(&mut self) {
@@ -164,9 +163,12 @@ impl Peer for Queues {
         self.lines.pieces.push(piece).is_ok()
     }
 
-    fn start(&mut self, motion: &Motion<f32>, at: [Fixed; 2]) -> Result<(), Refusal> {
-        let start = Start { motion: *motion, coordinates: Coordinates::Relative, at, further: None };
-        self.direct(Directive::Start(start))
+    fn bounds(&self, coordinates: Coordinates) -> Option<Bounds> {
+        MAILBOX.read().bounds(&self.machine, coordinates)
+    }
+
+    fn start(&mut self, start: &Start) -> Result<(), Refusal> {
+        self.direct(Directive::Start(*start))
     }
 
     fn stop(&mut self) {
@@ -196,7 +198,7 @@ impl Peer for Queues {
     fn telemetry(&mut self, loading: bool) -> Telemetry {
         let status = MAILBOX.read();
         self.lamp.show(status.motion.is_moving() || status.machine == State::Homing);
-        self.reporter.report(&status, loading)
+        self.reporter.report(&status, self.machine.safety.axes, loading)
     }
 
     fn host_vanished(&mut self) {

@@ -18,7 +18,7 @@ pub struct Reporter {
 
 impl Reporter {
     /// How it goes, without what the endpoint knows.
-    pub fn report(&mut self, status: &Status<AXES>, loading: bool) -> Telemetry {
+    pub fn report(&mut self, status: &Status<AXES>, axes: u8, loading: bool) -> Telemetry {
         let uptime = MAILBOX.uptime();
         let seconds = uptime.wrapping_sub(self.uptime).max(1) as f32 * shared::TICK;
         let mut square = 0.0;
@@ -29,12 +29,12 @@ impl Reporter {
         *self = Self { uptime, position: status.position };
         let [cycles, worst_cycles] = MAILBOX.cycles();
         Telemetry {
-            // micromath's root is off by up to 6 %; it serves a display.
-            speed: F32Ext::sqrt(square) / seconds,
+            // micromath's root is off by up to 6 %, and not 0 of 0; it serves a display.
+            speed: if square > 0.0 { F32Ext::sqrt(square) / seconds } else { 0.0 },
             cycles,
             worst_cycles,
             stack: stack::high_water(),
-            ..status.telemetry(loading)
+            ..status.telemetry(axes, loading)
         }
     }
 }

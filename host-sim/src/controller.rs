@@ -1,53 +1,31 @@
-//! A controller without hardware: the endpoint, loader and executor of `shared` behind a line of bytes.
+//! A controller without hardware: the endpoint and the tick of `shared` behind a line of bytes, on the machine of [`crate::rig`].
 //!
-//! It takes bytes and ticks, and gives bytes and setpoints; who lets its time pass, and how fast, is the caller's. Its axes are where
-//! their setpoints are.
-
-use std::collections::VecDeque;
+//! It takes bytes and ticks, and gives bytes and setpoints; who lets its time pass, and how fast, is the caller's.
 
 use shared::active::ActivePiece;
-use shared::executor::{Executor, Pieces, State};
+use shared::control::{Directive, PathEnd, Start};
+use shared::executor::State;
 use shared::fixed::{Fixed, Position};
-use shared::hash::SetpointHash;
 use shared::link::action::IMAGE_SIZE;
-use shared::link::{Action, Answer, Chunk, End, Ending, Endpoint, Frame, Identity, Machine, Refusal, Telemetry};
-use shared::loader::Motion;
+use shared::link::{Action, Answer, Chunk, End, Endpoint, Frame, Identity, Machine, Refusal, Telemetry};
+use shared::loader::Bounds;
+use shared::machine::image::{decode, encode};
+use shared::machine::{HostLost, MachineSettings};
 use shared::motion::MotionCommand;
-use shared::safety::{self, Coordinates, Fault};
-use shared::supply::PathTime;
+use shared::safety::{self, Coordinates};
 
-/// What a host that vanishes leaves.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Alone {
-    /// A machine that finishes what is queued and rests.
-    #[default]
-    Finish,
-    /// A machine that comes to rest on the path.
-    Brake,
-}
+use crate::rig::{Queue, Rig, RigError};
 
 /// What a controller is set up with.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Settings {
     /// Pieces that the queue holds; the firmware's holds 63.
     pub capacity: u16,
-    /// What a host that vanishes leaves.
-    pub alone: Alone,
-    /// Whether it can keep a configuration image.
-    pub keeps_image: bool,
+    /// The machine that it keeps.
+    pub machine: Option<MachineSettings>,
 }
-
-impl Default for Settings {
-    fn default() -> Self {
-        Self { capacity: 63, alone: Alone::default(), keeps_image: true }
-    }
-}
-
-/// x, y and z; their positions are always known.
-const AXES: u8 = 0b111;
 
 /// See the module.
-#[derive(Debug)]
 pub struct Controller {
     endpoint: Endpoint,
     machine: Virtual,
@@ -55,16 +33,12 @@ pub struct Controller {
 }
 
 /// What the endpoint works on.
-#[derive(Debug)]
 struct Virtual {
-    settings: Settings,
-    queue: Queue,
-    executor: Executor<f32>,
-    hash: SetpointHash,
-    ticks: u32,
-    started: bool,
-    aborted: bool,
-    fault: Option<Fault>,
+    capacity: u16,
+    rig: Rig,
+    /// Ticks that have been taken to answer a directive, and that the caller has still to let pass.
+    ahead: u32,
+    /// Where the machine was a tick before.
     before: Position,
     loaded: u64,
     image: Vec<u8>,
@@ -72,47 +46,22 @@ struct Virtual {
     to_send: Vec<u8>,
 }
 
-#[derive(Debug, Default)]
-struct Queue {
-    pieces: VecDeque<ActivePiece<f32>>,
-    reach: PathTime,
-}
-
-impl Pieces<f32> for Queue {
-    fn next_piece(&mut self, place: &mut Option<ActivePiece<f32>>) -> bool {
-        let next = self.pieces.pop_front();
-        *place = next.or(*place);
-        next.is_some()
-    }
-
-    fn horizon(&self) -> Option<PathTime> {
-        Some(self.reach)
-    }
-
-    fn discard(&mut self) {
-        self.pieces.clear();
-    }
-}
-
 impl Controller {
-    /// At rest at the origin, in no session.
-    pub fn new(settings: Settings) -> Self {
-        let machine = Virtual {
-            settings,
-            queue: Queue::default(),
-            executor: Executor::new(shared::TICK, [Fixed(0); 3]),
-            hash: SetpointHash::new(),
-            ticks: 0,
-            started: false,
-            aborted: false,
-            fault: None,
+    /// A controller that was switched on, in no session. Errors: a machine that it cannot drive.
+    pub fn new(settings: Settings) -> Result<Self, RigError> {
+        let image = settings.machine.as_ref().and_then(|machine| encode(machine).ok());
+        let mut machine = Virtual {
+            capacity: settings.capacity,
+            rig: Rig::new(settings.machine.as_ref())?,
+            ahead: 0,
             before: [Fixed(0); 3],
             loaded: 0,
-            image: Vec::new(),
+            image: image.map_or_else(Vec::new, |image| image.to_vec()),
             draft: Vec::new(),
             to_send: Vec::new(),
         };
-        Self { endpoint: Endpoint::new(), machine, uptime: 0 }
+        machine.rig.tick();
+        Ok(Self { endpoint: Endpoint::new(), machine, uptime: 0 })
     }
 
     /// Takes bytes from the line.
@@ -122,12 +71,15 @@ impl Controller {
         }
     }
 
-    /// One tick: moves, and reports what is due. Returns the setpoint.
+    /// One tick: moves, and reports what is due. Returns the setpoint, in the path's coordinates.
     pub fn tick(&mut self) -> Position {
         self.uptime = self.uptime.wrapping_add(1);
-        self.machine.walk();
+        match self.machine.ahead.checked_sub(1) {
+            Some(ahead) => self.machine.ahead = ahead,
+            None => self.machine.walk(),
+        }
         self.endpoint.poll(&mut self.machine, self.uptime);
-        self.machine.executor.setpoint()
+        self.setpoint()
     }
 
     /// The bytes for the line since the last call.
@@ -137,12 +89,12 @@ impl Controller {
 
     /// What the motion is about.
     pub fn state(&self) -> State {
-        self.machine.executor.state()
+        self.machine.rig.status.motion
     }
 
-    /// The setpoint of the last tick.
+    /// The setpoint of the last tick, in the path's coordinates.
     pub fn setpoint(&self) -> Position {
-        self.machine.executor.setpoint()
+        self.machine.rig.status.setpoint
     }
 
     /// How many pieces were accepted since it was made.
@@ -152,27 +104,34 @@ impl Controller {
 
     /// Pieces that wait in the queue.
     pub fn queued(&self) -> usize {
-        self.machine.queue.pieces.len()
+        self.machine.rig.queue.len()
     }
 
-    /// Sets a fault as a machine would, or takes it away. With one the motion stops at once.
-    pub fn set_fault(&mut self, fault: Option<Fault>) {
-        self.machine.fault = fault;
-        if fault.is_some() {
-            self.machine.executor.abort();
-            self.machine.queue.discard();
-        }
+    /// The machine at its pins, to press its switches.
+    pub fn rig(&mut self) -> &mut Rig {
+        &mut self.machine.rig
     }
 }
 
 impl Virtual {
     fn walk(&mut self) {
-        let state = self.executor.state();
-        self.before = self.executor.setpoint();
-        if state.is_moving() || state == State::Held {
-            self.hash.add(self.executor.tick(&mut self.queue));
-            self.ticks = self.ticks.wrapping_add(1);
+        self.before = self.rig.status.position;
+        self.rig.tick();
+    }
+
+    /// Hands a directive to the tick, and lets time pass until there is an answer.
+    fn direct(&mut self, directive: Directive) -> Result<(), Refusal> {
+        /// News go before a directive; there are three in a row at most.
+        const PATIENCE: usize = 8;
+        (self.rig.asked, self.rig.answer) = (Some(directive), None);
+        for _ in 0..PATIENCE {
+            self.walk();
+            self.ahead += 1;
+            if let Some(answer) = self.rig.answer.take() {
+                return answer.map_err(Refusal::from);
+            }
         }
+        Err(Refusal::Busy)
     }
 
     fn image_part(&self, offset: u16) -> Answer {
@@ -196,12 +155,20 @@ impl Virtual {
         Ok(Answer::Done)
     }
 
+    /// Keeps a machine and starts anew with it, as a board does.
     fn commit(&mut self, length: u16, crc: u32) -> Result<Answer, Refusal> {
         let draft = self.draft.get(..usize::from(length)).ok_or(Refusal::Image)?;
         if checksum(draft) != crc {
             return Err(Refusal::Image);
         }
+        let settings = decode(draft).map_err(|_| Refusal::Image)?;
+        let rig = Rig::new(Some(&settings)).map_err(|_| Refusal::Image)?;
+        if !matches!(self.rig.status.machine, safety::State::Idle | safety::State::Fault | safety::State::EStop) {
+            return Err(Refusal::Busy);
+        }
         self.image = draft.to_vec();
+        self.rig = rig;
+        self.rig.tick();
         Ok(Answer::Done)
     }
 }
@@ -219,115 +186,72 @@ impl Machine for Virtual {
             version(env!("CARGO_PKG_VERSION_MINOR")),
             version(env!("CARGO_PKG_VERSION_PATCH")),
         ];
-        Identity { firmware, axes: 3, capacity: self.settings.capacity }
+        Identity { firmware, axes: self.rig.machine.axes.len() as u8, capacity: self.capacity }
     }
 
     fn room(&self) -> u16 {
-        self.settings.capacity.saturating_sub(self.queue.pieces.len() as u16)
+        self.capacity.saturating_sub(self.rig.queue.len() as u16)
     }
 
     fn ready(&self) -> Result<(), Refusal> {
-        self.fault.map_or(Ok(()), |fault| Err(Refusal::Fault(fault)))
+        self.rig.status.fault.map_or(Ok(()), |fault| Err(Refusal::Fault(fault)))
     }
 
     fn clear(&mut self) {
-        self.executor.abort();
-        self.queue = Queue::default();
-        (self.started, self.aborted) = (false, false);
+        // A path that runs is the endpoint's own, which does not ask for this then.
+        let _ = self.direct(Directive::Clear);
+        self.rig.queue = Queue::default();
     }
 
     fn push(&mut self, piece: ActivePiece<f32>) -> bool {
-        self.queue.reach = piece.reach();
-        self.queue.pieces.push_back(piece);
+        self.rig.queue.push(piece);
         self.loaded += 1;
         true
     }
 
-    /// It stands where any job begins, in whatever coordinates.
-    fn start(&mut self, motion: &Motion<f32>, _: Coordinates, [x, y]: [Fixed; 2]) -> Result<(), Refusal> {
-        self.executor.stand_at([x, y, Fixed(0)]);
-        self.executor.begin(motion);
-        (self.hash, self.ticks, self.started) = (SetpointHash::new(), 0, true);
-        Ok(())
+    fn bounds(&self, coordinates: Coordinates) -> Option<Bounds> {
+        self.rig.status.bounds(&self.rig.machine, coordinates)
+    }
+
+    fn start(&mut self, start: &Start) -> Result<(), Refusal> {
+        self.direct(Directive::Start(*start))
     }
 
     fn stop(&mut self) {
-        self.executor.abort();
-        self.queue.discard();
-        self.aborted = self.started;
+        // A path that has just ended needs no cancelling.
+        let _ = match self.rig.status.path {
+            PathEnd::Running => self.direct(Directive::Motion(MotionCommand::Cancel)),
+            _ => self.direct(Directive::Clear),
+        };
     }
 
     fn act(&mut self, action: Action) -> Result<Answer, Refusal> {
+        if let Some(directive) = action.directive() {
+            return self.direct(directive).map(|()| Answer::Done);
+        }
         match action {
-            Action::Motion(command) => self.executor.command(command).map(|()| Answer::Done).map_err(Refusal::Motion),
-            Action::Home => Err(Refusal::Unsupported),
-            Action::Acknowledge => {
-                self.fault = None;
-                Ok(Answer::Done)
-            }
-            Action::WriteImage { .. } | Action::CommitImage { .. } | Action::ReadImage { .. }
-                if !self.settings.keeps_image =>
-            {
-                Err(Refusal::Unsupported)
-            }
             Action::WriteImage { offset, chunk } => self.put_aside(offset, &chunk),
             Action::CommitImage { length, crc } => self.commit(length, crc),
             Action::ReadImage { offset } => Ok(self.image_part(offset)),
+            Action::Motion(_) | Action::Home | Action::Acknowledge => Err(Refusal::Unsupported),
         }
     }
 
     fn end(&self) -> Option<End> {
-        if let Some(fault) = self.fault {
-            return Some(End::Early(Ending::Fault(fault)));
-        }
-        match self.executor.state() {
-            _ if self.aborted => Some(End::Early(Ending::Stopped)),
-            State::Finished => {
-                Some(End::Finished { ticks: self.ticks, residual: self.executor.spare_time(), hash: self.hash.value() })
-            }
-            State::Cancelled => Some(End::Early(Ending::Cancelled)),
-            _ => None,
-        }
+        self.rig.status.end()
     }
 
     fn telemetry(&mut self, loading: bool) -> Telemetry {
-        use shared::link::MotionState;
-        let setpoint = self.executor.setpoint();
         let way = |(now, before): (Fixed, Fixed)| now.minus::<f32>(before).powi(2);
-        let square: f32 = setpoint.into_iter().zip(self.before).map(way).sum();
-        let state = match self.executor.state() {
-            _ if self.fault.is_some() => MotionState::Fault,
-            State::Idle | State::Finished | State::Cancelled if loading => MotionState::Loading,
-            _ if self.aborted => MotionState::Stopped,
-            state => state.into(),
-        };
-        let machine = match self.executor.state() {
-            _ if self.fault.is_some() => safety::State::Fault,
-            State::Holding | State::Held => safety::State::Hold,
-            State::Cancelling => safety::State::Braking,
-            State::Run | State::Braking | State::Starved => safety::State::Run,
-            State::Idle | State::Finished | State::Cancelled => safety::State::Idle,
-        };
-        Telemetry {
-            state,
-            machine,
-            fault: self.fault,
-            axes: AXES,
-            known: AXES,
-            tick: self.ticks,
-            pieces: self.executor.place().map_or(0, |place| place.piece + 1),
-            setpoint,
-            actual: setpoint,
-            speed: square.sqrt() / shared::TICK,
-            percent: self.executor.percent(),
-            ..Telemetry::default()
-        }
+        let square: f32 = self.rig.status.position.into_iter().zip(self.before).map(way).sum();
+        let axes = self.rig.machine.safety.axes;
+        Telemetry { speed: square.sqrt() / shared::TICK, ..self.rig.status.telemetry(axes, loading) }
     }
 
     fn host_vanished(&mut self) {
-        if self.settings.alone == Alone::Brake {
-            // A motion that cannot be held has no other end than its own.
-            let _ = self.executor.command(MotionCommand::Hold);
+        if self.rig.machine.host_lost == HostLost::Brake {
+            // A motion that has just ended needs no cancelling.
+            let _ = self.direct(Directive::Motion(MotionCommand::Cancel));
         }
     }
 

@@ -39,6 +39,7 @@ pub mod plant;
 pub mod prepare;
 pub mod report;
 pub mod reproduce;
+pub mod rig;
 pub mod session;
 pub mod simulate;
 pub mod stream;

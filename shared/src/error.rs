@@ -80,6 +80,8 @@ pub enum PathError {
     AfterLast,
     /// The path has no pieces.
     Empty,
+    /// A piece moves a further axis, and the first one did not say where that begins.
+    LateFurther,
     /// A piece leaves the travel of an axis.
     SoftLimit {
         /// Which axis, from 0.
@@ -138,6 +140,12 @@ impl fmt::Display for PathError {
             Self::LastPoint { width } => write!(f, "the last point is {width} mm away from where the last piece ends"),
             Self::AfterLast => write!(f, "a piece follows the one that was called the last"),
             Self::Empty => write!(f, "the path has no pieces"),
+            Self::LateFurther => {
+                write!(
+                    f,
+                    "the piece moves z, and the path did not begin with where z is; give its first piece a travel in z"
+                )
+            }
             Self::SoftLimit { axis, beyond } => {
                 let (end, name) =
                     (if beyond < 0.0 { "low" } else { "high" }, AXIS_NAMES.get(usize::from(axis)).unwrap_or(&"?"));

@@ -20,17 +20,57 @@ pub struct Motion<T> {
     pub(crate) pacer: Pacer<T>,
 }
 
+/// The travel of a machine, as a path must keep to it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Bounds<const F: usize = 1> {
+    limits: SoftLimits<F>,
+    /// Where the machine stands, of a path that begins there whatever its own coordinates are, and has not begun yet.
+    here: Option<([Fixed; 2], [Fixed; F])>,
+}
+
+impl<const F: usize> Bounds<F> {
+    /// Of a path in machine coordinates.
+    pub fn machine(limits: SoftLimits<F>) -> Self {
+        Self { limits, here: None }
+    }
+
+    /// Of a path that begins where the machine stands.
+    pub fn from_here(limits: SoftLimits<F>, plane: [Fixed; 2], further: [Fixed; F]) -> Self {
+        Self { limits, here: Some((plane, further)) }
+    }
+
+    /// Moves the travel into the coordinates of a path that begins at these points.
+    fn begin(&mut self, plane: [Fixed; 2], further: Option<[Fixed; F]>) {
+        let Some((here, further_here)) = self.here.take() else { return };
+        let moved = |limits: &mut [Fixed; 2], from: Fixed, to: Fixed| {
+            for limit in limits {
+                // Limits and positions are within 4 m, and 32 bits hold 8 m.
+                limit.0 = limit.0.saturating_add(to.0.saturating_sub(from.0));
+            }
+        };
+        for (limits, (from, to)) in self.limits.plane.iter_mut().zip(here.into_iter().zip(plane)) {
+            moved(limits, from, to);
+        }
+        for (limits, (from, to)) in
+            self.limits.further.iter_mut().zip(further_here.into_iter().zip(further.unwrap_or(further_here)))
+        {
+            moved(limits, from, to);
+        }
+    }
+}
+
 /// The checks of one path, piece after piece.
 #[derive(Clone, Copy, Debug)]
 pub struct Loader<T, const F: usize = 1> {
     header: Header<T>,
     tick: T,
-    limits: Option<SoftLimits<F>>,
+    bounds: Option<Bounds<F>>,
     pacer: Pacer<T>,
     start: Option<[Fixed; 2]>,
     end: [Fixed; 2],
     /// Where the further axes are, once a piece has said so.
     further: Option<[Fixed; F]>,
+    further_start: Option<[Fixed; F]>,
     until: PathTime,
     finished: bool,
 }
@@ -49,20 +89,20 @@ impl<T: Real, const F: usize> Loader<T, F> {
         Ok(Self {
             header: *header,
             tick,
-            limits: None,
+            bounds: None,
             pacer,
             start: None,
             end: [Fixed(0); 2],
             further: None,
+            further_start: None,
             until: PathTime::START,
             finished: false,
         })
     }
 
     /// This path, refused where a piece of it leaves the machine's travel.
-    pub fn within(mut self, limits: SoftLimits<F>) -> Self {
-        self.limits = Some(limits);
-        self
+    pub fn within(self, bounds: Bounds<F>) -> Self {
+        Self { bounds: Some(bounds), ..self }
     }
 
     /// What the executor begins this path with.
@@ -76,10 +116,14 @@ impl<T: Real, const F: usize> Loader<T, F> {
             return Err(PathError::AfterLast);
         }
         let mut active = ActivePiece::activate(piece, self.header.weight, self.tick)?.behind(self.until);
-        if let Some(limits) = self.limits {
-            limits.check(piece)?;
-        }
         let start = active.place(active.point_and_rate(-T::HALF).0);
+        if let Some(bounds) = &mut self.bounds {
+            bounds.begin(start, piece.further.map(|travel| travel.from));
+            bounds.limits.check(piece)?;
+        }
+        if self.start.is_some() && self.further.is_none() && piece.further.is_some() {
+            return Err(PathError::LateFurther);
+        }
         let end = active.place(active.point_and_rate(T::HALF).0);
         if self.start.is_some()
             && let Some(width) = self.gap(self.end, start)
@@ -110,6 +154,7 @@ impl<T: Real, const F: usize> Loader<T, F> {
             }
         }
         self.end = end;
+        self.further_start = self.further_start.or(piece.further.map(|travel| travel.from));
         self.further = active.further_end().or(self.further);
         self.until = active.until();
         Ok(active)
@@ -118,6 +163,11 @@ impl<T: Real, const F: usize> Loader<T, F> {
     /// Where the path starts; none before its first piece.
     pub fn start(&self) -> Option<[Fixed; 2]> {
         self.start
+    }
+
+    /// Where the further axes start; none before the first piece, and where the path does not move them.
+    pub fn further_start(&self) -> Option<[Fixed; F]> {
+        self.further_start
     }
 
     /// Whether the last piece of the path has been loaded.

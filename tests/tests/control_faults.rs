@@ -7,12 +7,13 @@
 use host_sim::job::Job;
 use host_sim::machine;
 use host_sim::path::Path;
+use host_sim::rig::{Axis, Rig};
 use shared::control::{Directive, PathEnd, Start};
 use shared::machine::MachineSettings;
 use shared::motion::MotionCommand;
 use shared::piece::{Header, Order, Piece};
 use shared::safety::{Coordinates, End, Fault, State};
-use tests::bench::{Axis, Bench};
+use tests::bench::{ask, load, rig};
 use tests::random::Random;
 
 const ROUTER: &str = include_str!("../../examples/machine.toml");
@@ -40,25 +41,25 @@ fn path() -> (Header<f32>, Vec<Piece<f32>>) {
 }
 
 /// A machine at rest, its job in the queue.
-fn ready(settings: &MachineSettings) -> (Bench, Start) {
-    let mut bench = Bench::new(settings);
+fn ready(settings: &MachineSettings) -> (Rig, Start) {
+    let mut bench = rig(settings);
     bench.tick();
     let (header, pieces) = path();
-    let start = bench.load(&header, &pieces, Coordinates::Relative);
+    let start = load(&mut bench, &header, &pieces, Coordinates::Relative);
     (bench, start)
 }
 
 /// How many ticks the job takes.
 fn length(settings: &MachineSettings) -> usize {
     let (mut bench, start) = ready(settings);
-    bench.ask(Directive::Start(start)).unwrap();
+    ask(&mut bench, Directive::Start(start)).unwrap();
     let mut ticks = 0;
-    while bench.status.unwrap().path == PathEnd::Running {
+    while bench.status.path == PathEnd::Running {
         bench.tick();
         ticks += 1;
         assert!(ticks < 10_000, "{:?}", bench.status);
     }
-    assert_eq!(bench.status.unwrap().path, PathEnd::Finished);
+    assert_eq!(bench.status.path, PathEnd::Finished);
     // It ends 1 mm right of and 8 mm above its start, by what the drives have done.
     for (axis, end) in [(0, 1.0), (1, 8.0)] {
         let resolution = match bench.axes[axis] {
@@ -105,7 +106,7 @@ impl Trouble {
         }
     }
 
-    fn happen(self, bench: &mut Bench) {
+    fn happen(self, bench: &mut Rig) {
         match self {
             Self::Stop => bench.pins.estop = !bench.pins.estop,
             Self::ShortStop => bench.stopped = true,
@@ -117,7 +118,7 @@ impl Trouble {
         }
     }
 
-    fn end(self, bench: &mut Bench) {
+    fn end(self, bench: &mut Rig) {
         match self {
             Self::ShortStop => {}
             Self::Blocked(_) => bench.blocked = 0,
@@ -155,8 +156,8 @@ fn at_random_ticks(text: &str, servos: bool) {
     let mut random = Random::new(7);
     for number in 0..FAULTS {
         let (mut bench, start) = ready(&settings);
-        bench.ask(Directive::Start(start)).unwrap();
-        let known = bench.status.unwrap().known;
+        ask(&mut bench, Directive::Start(start)).unwrap();
+        let known = bench.status.known;
         assert_eq!(known, 0, "nothing is known without homing");
         // The last tenth is left, so that every trouble comes in motion.
         for _ in 0..random.whole(0, ticks * 9 / 10) {
@@ -176,21 +177,21 @@ fn at_random_ticks(text: &str, servos: bool) {
             if let Trouble::Blocked(axis) = trouble {
                 let axis = usize::from(axis);
                 // While it is within its following error, nothing has to be seen; beyond it, the next tick sees it.
-                let target = bench.status.unwrap().position[axis].to_mm();
+                let target = bench.status.position[axis].to_mm();
                 let off = (target - before[axis]).abs();
                 assert!(off < 2.1 + 0.2, "{context}: {off} mm and nobody sees it");
-                if bench.status.unwrap().path == PathEnd::Finished {
+                if bench.status.path == PathEnd::Finished {
                     break bench.tick();
                 }
             }
         };
         if let Trouble::Blocked(_) = trouble
-            && bench.status.unwrap().path == PathEnd::Finished
+            && bench.status.path == PathEnd::Finished
         {
             // Blocked for less than its following error, up to the end.
             continue;
         }
-        let status = bench.status.unwrap();
+        let status = bench.status;
         assert!(!outputs.drives, "{context}: power");
         assert_eq!(outputs.commands.levels, [0.0; 3], "{context}");
         assert!(!bench.is_played() && bench.pulses == 0, "{context}: pulses");
@@ -207,7 +208,7 @@ fn at_random_ticks(text: &str, servos: bool) {
             assert!(!outputs.drives && bench.pulses == 0, "{context}: it comes back by itself");
         }
         assert_eq!(
-            bench.ask(Directive::Acknowledge).is_ok(),
+            ask(&mut bench, Directive::Acknowledge).is_ok(),
             matches!(trouble, Trouble::ShortStop | Trouble::Late | Trouble::Limit(..) | Trouble::Blocked(_)),
             "{context}"
         );
@@ -215,8 +216,8 @@ fn at_random_ticks(text: &str, servos: bool) {
         for _ in 0..200 {
             bench.tick();
         }
-        if bench.status.unwrap().machine != State::Idle {
-            assert_eq!(bench.ask(Directive::Acknowledge), Ok(()), "{context}");
+        if bench.status.machine != State::Idle {
+            assert_eq!(ask(&mut bench, Directive::Acknowledge), Ok(()), "{context}");
         }
         // Under power again nothing jumps: the axes stay where they are.
         let before = bench.axes.map(|axis| axis.place());
@@ -246,35 +247,35 @@ fn faults_at_random_ticks_with_servos() {
 fn hold_resume_and_cancel_through_the_whole_tick() {
     let settings = settings(ROUTER);
     let (mut bench, start) = ready(&settings);
-    bench.ask(Directive::Start(start)).unwrap();
+    ask(&mut bench, Directive::Start(start)).unwrap();
     for _ in 0..150 {
         bench.tick();
     }
-    bench.ask(Directive::Motion(MotionCommand::Hold)).unwrap();
+    ask(&mut bench, Directive::Motion(MotionCommand::Hold)).unwrap();
     for _ in 0..1_000 {
         bench.tick();
     }
     let held = bench.axes.map(|axis| axis.place());
-    assert_eq!(bench.status.unwrap().machine, State::Hold);
+    assert_eq!(bench.status.machine, State::Hold);
     for _ in 0..100 {
         assert!(bench.tick().drives);
         assert_eq!(bench.pulses, 0);
     }
-    bench.ask(Directive::Motion(MotionCommand::Resume)).unwrap();
+    ask(&mut bench, Directive::Motion(MotionCommand::Resume)).unwrap();
     for _ in 0..50 {
         bench.tick();
     }
     assert!(bench.axes[0].place() > held[0]);
-    bench.ask(Directive::Motion(MotionCommand::Cancel)).unwrap();
+    ask(&mut bench, Directive::Motion(MotionCommand::Cancel)).unwrap();
     for _ in 0..1_000 {
         bench.tick();
     }
-    assert_eq!((bench.status.unwrap().machine, bench.status.unwrap().path), (State::Idle, PathEnd::Cancelled));
+    assert_eq!((bench.status.machine, bench.status.path), (State::Idle, PathEnd::Cancelled));
     let left = bench.axes.map(|axis| axis.place());
     let (header, pieces) = path();
-    let start = bench.load(&header, &pieces, Coordinates::Relative);
-    bench.ask(Directive::Start(start)).unwrap();
-    while bench.status.unwrap().path == PathEnd::Running {
+    let start = load(&mut bench, &header, &pieces, Coordinates::Relative);
+    ask(&mut bench, Directive::Start(start)).unwrap();
+    while bench.status.path == PathEnd::Running {
         bench.tick();
     }
     for _ in 0..3 {

@@ -4,12 +4,13 @@
 use host_sim::job::Job;
 use host_sim::machine;
 use host_sim::path::Path;
+use host_sim::rig::{Axis, Rig};
 use shared::control::{Directive, DirectiveError, PathEnd};
 use shared::machine::MachineSettings;
 use shared::motion::MotionCommand;
 use shared::piece::Order;
 use shared::safety::{Coordinates, Fault, HomingFault, Refused, State};
-use tests::bench::{Axis, Bench};
+use tests::bench::{ask, load, rig};
 
 const ROUTER: &str = include_str!("../../examples/machine.toml");
 const SERVOS: &str = include_str!("../../examples/mill-servos.toml");
@@ -44,7 +45,7 @@ fn servos_with_switches() -> MachineSettings {
 type Switch = (f64, bool);
 
 /// The levels of the switches where the axes are; normally closed, so that high is pressed.
-fn look(bench: &mut Bench, switches: &[Option<Switch>; 3]) {
+fn look(bench: &mut Rig, switches: &[Option<Switch>; 3]) {
     let (mut low, mut high) = (0, 0);
     for (axis, switch) in switches.iter().enumerate() {
         let place = bench.axes[axis].place();
@@ -58,11 +59,11 @@ fn look(bench: &mut Bench, switches: &[Option<Switch>; 3]) {
 }
 
 /// Ticks until the machine is idle again, or has a fault.
-fn search(bench: &mut Bench, switches: &[Option<Switch>; 3]) {
+fn search(bench: &mut Rig, switches: &[Option<Switch>; 3]) {
     for _ in 0..200_000 {
         look(bench, switches);
         bench.tick();
-        if bench.status.unwrap().machine != State::Homing {
+        if bench.status.machine != State::Homing {
             return;
         }
     }
@@ -78,12 +79,12 @@ fn line(from: [f64; 2], to: [f64; 2]) -> String {
     )
 }
 
-fn start(bench: &mut Bench, text: &str) -> Result<(), DirectiveError> {
+fn start(bench: &mut Rig, text: &str) -> Result<(), DirectiveError> {
     let job = Job::from_toml("line.toml", text).unwrap();
     let path = Path::new(&job, Order::First).unwrap();
     let pieces: Vec<_> = path.wire().collect();
-    let start = bench.load(&path.header, &pieces, Coordinates::Machine);
-    bench.ask(Directive::Start(start))
+    let start = load(&mut bench, &path.header, &pieces, Coordinates::Machine);
+    ask(&mut bench, Directive::Start(start))
 }
 
 fn resolution(axis: &Axis) -> f64 {
@@ -94,22 +95,22 @@ fn resolution(axis: &Axis) -> f64 {
 /// Before: nothing is known, and a job in machine coordinates is refused. After: every axis is where it says, to the way of one slow tick
 /// and a step; a job runs where the machine stands, and nowhere else.
 fn finds_home(settings: &MachineSettings, switches: [Option<Switch>; 3], axes: usize, slow: f64) {
-    let mut bench = Bench::new(settings);
+    let mut bench = rig(settings);
     look(&mut bench, &switches);
     bench.tick();
     let unknown = DirectiveError::Machine(Refused::PositionUnknown { axis: 0 });
     assert_eq!(start(&mut bench, &line([2.0, 2.0], [12.0, 2.0])), Err(unknown));
-    assert_eq!(bench.status.unwrap().known, 0);
-    bench.ask(Directive::Home { axes: 0 }).unwrap();
+    assert_eq!(bench.status.known, 0);
+    ask(&mut bench, Directive::Home { axes: 0 }).unwrap();
     search(&mut bench, &switches);
-    let status = bench.status.unwrap();
+    let status = bench.status;
     assert_eq!((status.machine, status.fault, status.known), (State::Idle, None, (1 << axes) - 1));
     for _ in 0..500 {
         bench.tick();
     }
     // Where the switches stand is coordinate 0, as configured: the position of home is its way from the switch.
     let zero = |axis: usize| switches[axis].unwrap().0;
-    let off = |bench: &Bench, axis: usize| bench.believed(axis) - (bench.axes[axis].place() - zero(axis));
+    let off = |bench: &Rig, axis: usize| bench.believed(axis) - (bench.axes[axis].place() - zero(axis));
     for axis in 0..axes {
         let found = off(&bench, axis);
         // A servo lags its setpoint, at this speed by a little more than the way of a tick; it is the same every time.
@@ -119,11 +120,11 @@ fn finds_home(settings: &MachineSettings, switches: [Option<Switch>; 3], axes: u
     let away = DirectiveError::Machine(Refused::Away { axis: 1 });
     assert_eq!(start(&mut bench, &line([2.0, 2.5], [12.0, 2.0])), Err(away));
     start(&mut bench, &line([2.0, 2.0], [12.0, 5.0])).unwrap();
-    while bench.status.unwrap().path == PathEnd::Running {
+    while bench.status.path == PathEnd::Running {
         look(&mut bench, &switches);
         bench.tick();
     }
-    assert_eq!(bench.status.unwrap().path, PathEnd::Finished);
+    assert_eq!(bench.status.path, PathEnd::Finished);
     for _ in 0..1_000 {
         bench.tick();
     }
@@ -144,7 +145,7 @@ fn finds_home(settings: &MachineSettings, switches: [Option<Switch>; 3], axes: u
     }
     let servos = (0..axes).filter(|&axis| matches!(bench.axes[axis], Axis::Servo { .. }));
     let known = servos.fold(0, |known, axis| known | 1 << axis);
-    assert_eq!(bench.status.unwrap().known, known);
+    assert_eq!(bench.status.known, known);
     for axis in (0..axes).filter(|axis| known >> axis & 1 != 0) {
         let found = off(&bench, axis);
         assert!(found.abs() < 2.0 * slow / 1024.0 + 1.5 * resolution(&bench.axes[axis]), "axis {axis}: {found}");
@@ -170,11 +171,11 @@ fn servo_axes_find_home() {
 /// A switch that never acts: the search ends, with the axis named; nothing is known.
 #[test]
 fn a_missing_switch_is_told() {
-    let mut bench = Bench::new(&settings(ROUTER));
+    let mut bench = rig(&settings(ROUTER));
     bench.tick();
-    bench.ask(Directive::Home { axes: 0b100 }).unwrap();
+    ask(&mut bench, Directive::Home { axes: 0b100 }).unwrap();
     search(&mut bench, &[None; 3]);
-    let status = bench.status.unwrap();
+    let status = bench.status;
     let fault = Fault::Homing { axis: 2, fault: HomingFault::NotFound };
     assert_eq!((status.machine, status.fault, status.known), (State::Fault, Some(fault), 0));
     // 120 mm of travel, and what overrun, back-off and pull-off take.
@@ -184,18 +185,18 @@ fn a_missing_switch_is_told() {
 /// A search that is cancelled comes to rest within its acceleration, and its axes stay unknown.
 #[test]
 fn a_search_can_be_cancelled() {
-    let mut bench = Bench::new(&settings(ROUTER));
+    let mut bench = rig(&settings(ROUTER));
     bench.tick();
-    bench.ask(Directive::Home { axes: 0b001 }).unwrap();
+    ask(&mut bench, Directive::Home { axes: 0b001 }).unwrap();
     for _ in 0..300 {
         bench.tick();
     }
-    bench.ask(Directive::Motion(MotionCommand::Cancel)).unwrap();
+    ask(&mut bench, Directive::Motion(MotionCommand::Cancel)).unwrap();
     let from = bench.axes[0].place();
     for _ in 0..300 {
         bench.tick();
     }
-    assert_eq!((bench.status.unwrap().machine, bench.status.unwrap().known), (State::Idle, 0));
+    assert_eq!((bench.status.machine, bench.status.known), (State::Idle, 0));
     // v^2/(2 a) of 25 mm/s and 400 mm/s^2 is 0.78 mm, and some ticks pass before and after.
     let way = from - bench.axes[0].place();
     assert!(way > 0.7 && way < 0.95, "{way}");
@@ -204,9 +205,9 @@ fn a_search_can_be_cancelled() {
 /// A limit switch at the other end, by which no axis looks for home, ends a search.
 #[test]
 fn a_foreign_limit_ends_a_search() {
-    let mut bench = Bench::new(&settings(ROUTER));
+    let mut bench = rig(&settings(ROUTER));
     bench.tick();
-    bench.ask(Directive::Home { axes: 0b001 }).unwrap();
+    ask(&mut bench, Directive::Home { axes: 0b001 }).unwrap();
     for _ in 0..300 {
         bench.tick();
     }
@@ -214,6 +215,6 @@ fn a_foreign_limit_ends_a_search() {
     for _ in 0..6 {
         bench.tick();
     }
-    assert_eq!(bench.status.unwrap().machine, State::Fault);
-    assert!(matches!(bench.status.unwrap().fault, Some(Fault::Limit { axis: 0, .. })));
+    assert_eq!(bench.status.machine, State::Fault);
+    assert!(matches!(bench.status.fault, Some(Fault::Limit { axis: 0, .. })));
 }

@@ -60,7 +60,7 @@ fn running(settings: Settings) -> Controller {
     let mut controller = open(settings);
     say(&mut controller, 1, &Command::Begin(HEADER));
     say(&mut controller, 2, &Command::Piece(line()));
-    assert!(matches!(say(&mut controller, 3, &Command::Run(Coordinates::Machine))[..], [Report::Ack { next: 4, .. }]));
+    assert!(matches!(say(&mut controller, 3, &Command::Run)[..], [Report::Ack { next: 4, .. }]));
     controller
 }
 
@@ -126,7 +126,7 @@ fn a_refusal_is_said_again() {
     let faulty = Command::Piece(Piece { feed: -1.0, ..line() });
     let refused = Report::Refused { sequence: 2, reason: Refusal::Path(PathError::Feed { feed: -1.0 }) };
     assert_eq!(say(&mut controller, 2, &faulty), [refused]);
-    let run = say(&mut controller, 3, &Command::Run(Coordinates::Machine));
+    let run = say(&mut controller, 3, &Command::Run);
     assert_eq!(run, [Report::Refused { sequence: 3, reason: Refusal::NoJob }]);
     let said = say(&mut controller, 4, &Command::Status);
     assert!(matches!(said[..], [Report::Telemetry(Telemetry { next: 4, .. }), again] if again == refused), "{said:?}");

@@ -57,7 +57,7 @@ proptest! {
         let end = bytes.len();
         bytes.push(0);
         bytes.extend(&commands[5]);
-        prop_assert_eq!(found::<Command>(&bytes).pop(), Some(Command::Run(Coordinates::Machine)));
+        prop_assert_eq!(found::<Command>(&bytes).pop(), Some(Command::Run));
         bytes.truncate(end + 1);
         bytes.extend(&reports[1]);
         prop_assert_eq!(found::<Report>(&bytes).pop(), Some(Report::Ack { next: 300, room: 60 }));

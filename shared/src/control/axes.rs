@@ -7,7 +7,7 @@ use core::fmt;
 
 use super::ring::Ring;
 use crate::fixed::{Fixed, Position};
-use crate::machine::{AxisDrive, AxisName, Drive, Machine, StepDrive};
+use crate::machine::{AxisDrive, AxisName, AxisSettings, Drive, Machine, StepDrive};
 use crate::safety::Fault;
 use crate::servo::{Servo, ServoState};
 use crate::steps::{Half, StepAxes, StepError, StepFault, StepSettings, StepState};
@@ -283,12 +283,12 @@ impl<const AXES: usize, const PORTS: usize, const SLOTS: usize> Axes<AXES, PORTS
 
 /// The settings of the pulses of every axis on a board: what a decoder is made with.
 pub fn step_settings<const AXES: usize>(
-    machine: &crate::machine::MachineSettings,
+    axes: &[AxisSettings],
     pins: &[StepPins; AXES],
     slots: usize,
 ) -> [StepSettings; AXES] {
     let mut settings = pins.map(|pins| STILL.on_pins(pins.step, pins.direction, slots));
-    for ((setting, pins), axis) in settings.iter_mut().zip(pins).zip(&machine.axes) {
+    for ((setting, pins), axis) in settings.iter_mut().zip(pins).zip(axes) {
         if let AxisDrive::Step(drive) = axis.drive {
             *setting = drive.on_pins(pins.step, pins.direction, slots);
         }

@@ -8,9 +8,9 @@ use super::frame::{Decoder, Frame, NO_SESSION, encode};
 use super::message::{Command, Ending, Identity, Refusal, Report, Telemetry, VERSION};
 use super::receiver::{Receiver, Turn};
 use crate::active::ActivePiece;
+use crate::control::Start;
 use crate::error::PathError;
-use crate::fixed::Fixed;
-use crate::loader::{Loader, Motion};
+use crate::loader::{Bounds, Loader};
 use crate::motion::MotionCommand;
 use crate::piece::{Header, Piece};
 use crate::safety::Coordinates;
@@ -33,10 +33,11 @@ pub trait Machine {
     fn clear(&mut self);
     /// Puts a piece into the queue; false where it is full.
     fn push(&mut self, piece: ActivePiece<f32>) -> bool;
-    /// Begins the path whose first pieces stand in the queue, in these coordinates, in which `at` is its first point. Errors: why not;
-    /// nothing moves then.
-    fn start(&mut self, motion: &Motion<f32>, coordinates: Coordinates, at: [Fixed; 2]) -> Result<(), Refusal>;
-    /// Stops at once and empties the queue.
+    /// How far a path in these coordinates may go; none where nobody knows.
+    fn bounds(&self, coordinates: Coordinates) -> Option<Bounds>;
+    /// Begins the path whose first pieces stand in the queue. Errors: why not; nothing moves then.
+    fn start(&mut self, start: &Start) -> Result<(), Refusal>;
+    /// Gives up the path: one that runs comes to rest on itself and has been cancelled then; of one that waits nothing moves.
     fn stop(&mut self);
     /// Carries out an action, whose numbers are in range.
     fn act(&mut self, action: Action) -> Result<Answer, Refusal>;
@@ -98,6 +99,8 @@ pub struct Endpoint {
     decoder: Decoder,
     receiver: Receiver,
     job: Job,
+    /// Those of the job.
+    coordinates: Coordinates,
     /// The first command of the session that was refused, and why; said again to whoever asks.
     refused: Option<(u16, Refusal)>,
     /// What came of the last action.
@@ -124,6 +127,7 @@ impl Endpoint {
             decoder: Decoder::new(),
             receiver: Receiver::new(),
             job: Job::None,
+            coordinates: Coordinates::Machine,
             refused: None,
             outcome: Ok(Answer::Done),
             report_number: 0,
@@ -252,9 +256,9 @@ impl Endpoint {
 
     fn obey(&mut self, machine: &mut impl Machine, command: Command) -> Result<(), Refusal> {
         match command {
-            Command::Begin(header) => self.begin(machine, &header),
+            Command::Begin(header, coordinates) => self.begin(machine, &header, coordinates),
             Command::Piece(piece) => self.load(machine, &piece),
-            Command::Run(coordinates) => self.run(machine, coordinates),
+            Command::Run => self.run(machine),
             Command::Abort => {
                 machine.stop();
                 self.job = match self.job {
@@ -269,13 +273,22 @@ impl Endpoint {
         }
     }
 
-    fn begin(&mut self, machine: &mut impl Machine, header: &Header<f32>) -> Result<(), Refusal> {
+    fn begin(
+        &mut self,
+        machine: &mut impl Machine,
+        header: &Header<f32>,
+        coordinates: Coordinates,
+    ) -> Result<(), Refusal> {
         if !matches!(self.job, Job::None) {
             return Err(Refusal::Busy);
         }
         machine.ready()?;
-        let loader = Loader::new(header, crate::TICK).map_err(Refusal::Path)?;
+        let mut loader = Loader::new(header, crate::TICK).map_err(Refusal::Path)?;
+        if let Some(bounds) = machine.bounds(coordinates) {
+            loader = loader.within(bounds);
+        }
         machine.clear();
+        self.coordinates = coordinates;
         self.job = Job::Loading(loader);
         Ok(())
     }
@@ -301,7 +314,7 @@ impl Endpoint {
         outcome
     }
 
-    fn run(&mut self, machine: &mut impl Machine, coordinates: Coordinates) -> Result<(), Refusal> {
+    fn run(&mut self, machine: &mut impl Machine) -> Result<(), Refusal> {
         machine.ready()?;
         match core::mem::replace(&mut self.job, Job::None) {
             Job::None => Err(Refusal::NoJob),
@@ -315,7 +328,8 @@ impl Endpoint {
             }
             Job::Loading(loader) => {
                 let Some(at) = loader.start() else { return Err(Refusal::Path(PathError::Empty)) };
-                machine.start(&loader.motion(), coordinates, at)?;
+                let (motion, coordinates, further) = (loader.motion(), self.coordinates, loader.further_start());
+                machine.start(&Start { motion, coordinates, at, further })?;
                 self.job = Job::Running(loader);
                 Ok(())
             }

@@ -164,7 +164,7 @@ mod tests {
     use crate::fixed::Fixed;
     use crate::further::Travel;
     use crate::piece::{Piece, Shape};
-    use crate::safety::{Coordinates, Fault, HomingFault, State};
+    use crate::safety::{Fault, HomingFault, State};
 
     fn piece(x: f32, origin: i32) -> Piece<f32> {
         let w = Complex::new(x, -x);
@@ -181,7 +181,7 @@ mod tests {
     }
 
     const SESSION: u32 = 0x5eed_1234;
-    const RUN: Command = Command::Run(Coordinates::Machine);
+    const RUN: Command = Command::Run;
 
     fn decoder() -> Decoder {
         let mut decoder = Decoder::new();

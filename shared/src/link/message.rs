@@ -29,13 +29,13 @@ pub enum Command {
         /// A number that the host has not used lately; not 0.
         session: u32,
     },
-    /// Starts a job: what holds for all of its pieces.
-    Begin(Header<f32>),
+    /// Starts a job: what holds for all of its pieces, and what their coordinates mean.
+    Begin(Header<f32>, Coordinates),
     /// The next piece of the job.
     Piece(Piece<f32>),
-    /// Starts the motion of a job in these coordinates. More pieces may follow while it runs.
-    Run(Coordinates),
-    /// Stops the motion where it is and forgets the job. Taken out of sequence.
+    /// Starts the motion. More pieces may follow while it runs.
+    Run,
+    /// Gives up the job: a motion comes to rest on its path. Taken out of sequence.
     Abort,
     /// Asks for a [`Telemetry`], and for the end of a job that has ended or the refusal of one that was refused. Taken out of sequence, and in no session too: then it is
     /// answered in none, and the session of somebody else does not notice. A host that has nothing to say says this, to be heard.

@@ -59,7 +59,7 @@ impl Receiver {
             _ if session == NO_SESSION => return Turn::Ignore,
             Command::Abort => return Turn::Take(sequence, command),
             Command::Act(_) => return self.action(sequence, command),
-            Command::Begin(_) | Command::Piece(_) | Command::Run(_) => {}
+            Command::Begin(..) | Command::Piece(_) | Command::Run => {}
         }
         match sequence.wrapping_sub(self.next) {
             0 => {
@@ -86,10 +86,9 @@ impl Receiver {
 mod tests {
     use super::super::action::Action;
     use super::*;
-    use crate::safety::Coordinates;
 
     const SESSION: u32 = 77;
-    const RUN: Command = Command::Run(Coordinates::Machine);
+    const RUN: Command = Command::Run;
 
     fn said(session: u32, sequence: u16, message: Command) -> Result<Received<Command>, FrameError> {
         Ok(Received { session, sequence, message })

@@ -190,7 +190,7 @@ impl<'a> Sender<'a> {
     /// The next command of the job, where window and room allow it.
     fn script(&mut self, now_us: u64) -> Option<Frame> {
         let command = self.command(self.next)?;
-        if matches!(command, Command::Run(_)) && self.acknowledged < self.next {
+        if matches!(command, Command::Run) && self.acknowledged < self.next {
             // Nothing starts before all that is to be there has been taken: a refused piece is heard of first.
             return None;
         }
@@ -358,8 +358,8 @@ impl<'a> Sender<'a> {
         let header = self.header?;
         let run = self.run_index();
         match index {
-            1 => Some(Command::Begin(*header)),
-            _ if index == run => Some(Command::Run(self.coordinates)),
+            1 => Some(Command::Begin(*header, self.coordinates)),
+            _ if index == run => Some(Command::Run),
             _ => self.pieces.get(self.pieces_before(index) as usize).copied().map(Command::Piece),
         }
     }

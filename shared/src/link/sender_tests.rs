@@ -76,7 +76,7 @@ impl Model {
                 ack(self)
             }
             Turn::Take(_, command) => {
-                self.running |= matches!(command, Command::Run(_));
+                self.running |= matches!(command, Command::Run);
                 ack(self)
             }
             Turn::Repeated | Turn::RepeatedAction(_) | Turn::Ignore => ack(self),

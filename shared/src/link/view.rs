@@ -4,6 +4,9 @@ use super::action::Action;
 use super::endpoint::End;
 use super::message::{Ending, MotionState, Refusal, Telemetry};
 use crate::control::{Directive, DirectiveError, PathEnd, Status};
+use crate::loader::Bounds;
+use crate::machine::Machine;
+use crate::safety::Coordinates;
 use crate::{motion, safety};
 
 impl<const AXES: usize> Status<AXES> {
@@ -28,20 +31,35 @@ impl<const AXES: usize> Status<AXES> {
             PathEnd::Finished => Some(End::Finished { ticks: self.ticks, residual: self.residual, hash: self.hash }),
             PathEnd::Cancelled => Some(End::Early(Ending::Cancelled)),
             PathEnd::Stopped => Some(End::Early(Ending::Stopped)),
-            PathEnd::Faulted(fault) => Some(End::Early(Ending::Fault(fault.word() as u8))),
+            PathEnd::Faulted(fault) => Some(End::Early(Ending::Fault(fault))),
         }
     }
 
-    /// What a host is told, without what only the endpoint, a clock or a stack knows.
-    pub fn telemetry(&self, loading: bool) -> Telemetry {
+    /// What a host is told of a machine with these axes, without what only the endpoint, a clock or a stack knows.
+    pub fn telemetry(&self, axes: u8, loading: bool) -> Telemetry {
         Telemetry {
             state: self.motion_state(loading),
+            machine: self.machine,
+            fault: self.fault,
+            axes,
+            known: self.known,
             tick: self.ticks,
             pieces: self.pieces,
             setpoint: self.position,
+            actual: self.actual,
             percent: self.percent,
-            fault: self.fault.map_or(0, |fault| fault.word() as u8),
             ..Telemetry::default()
+        }
+    }
+
+    /// How far a path in these coordinates may go on this machine; none where nobody knows where it stands.
+    pub fn bounds(&self, machine: &Machine, coordinates: Coordinates) -> Option<Bounds> {
+        let limits = machine.soft_limits();
+        let [x, y, z] = self.position;
+        match coordinates {
+            Coordinates::Machine => Some(Bounds::machine(limits)),
+            Coordinates::Relative if self.known == machine.safety.axes => Some(Bounds::from_here(limits, [x, y], [z])),
+            Coordinates::Relative => None,
         }
     }
 }
@@ -62,7 +80,7 @@ impl From<DirectiveError> for Refusal {
     fn from(error: DirectiveError) -> Self {
         match error {
             DirectiveError::Motion(error) => Self::Motion(error),
-            DirectiveError::Machine(_) => Self::Busy,
+            DirectiveError::Machine(refused) => Self::Machine(refused),
         }
     }
 }
