@@ -150,7 +150,7 @@ impl Peer for Queues {
     }
 
     fn ready(&self) -> Result<(), Refusal> {
-        MAILBOX.read().fault.map_or(Ok(()), |fault| Err(Refusal::Fault(fault)))
+        MAILBOX.read().ready()
     }
 
     fn clear(&mut self) {
@@ -204,7 +204,8 @@ impl Peer for Queues {
     fn host_vanished(&mut self) {
         defmt::warn!("the host has vanished");
         if self.machine.host_lost == HostLost::Brake {
-            let _ = self.direct(Directive::Motion(MotionCommand::Cancel));
+            // A motion that has just ended needs no hold. The next host may resume it.
+            let _ = self.direct(Directive::Motion(MotionCommand::Hold));
         }
     }
 

@@ -25,6 +25,13 @@ pub struct Settings {
     pub machine: Option<MachineSettings>,
 }
 
+impl Settings {
+    /// A controller like the firmware's.
+    pub fn new(machine: Option<MachineSettings>) -> Self {
+        Self { capacity: 63, machine }
+    }
+}
+
 /// See the module.
 pub struct Controller {
     endpoint: Endpoint,
@@ -194,7 +201,7 @@ impl Machine for Virtual {
     }
 
     fn ready(&self) -> Result<(), Refusal> {
-        self.rig.status.fault.map_or(Ok(()), |fault| Err(Refusal::Fault(fault)))
+        self.rig.status.ready()
     }
 
     fn clear(&mut self) {
@@ -250,8 +257,8 @@ impl Machine for Virtual {
 
     fn host_vanished(&mut self) {
         if self.rig.machine.host_lost == HostLost::Brake {
-            // A motion that has just ended needs no cancelling.
-            let _ = self.direct(Directive::Motion(MotionCommand::Cancel));
+            // A motion that has just ended needs no hold. The next host may resume it.
+            let _ = self.direct(Directive::Motion(MotionCommand::Hold));
         }
     }
 

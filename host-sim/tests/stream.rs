@@ -7,21 +7,35 @@ use std::process::{Command, Output};
 use std::thread;
 
 use host_sim::controller::{Controller, Settings};
-use shared::safety::Fault;
+use host_sim::machine::{from_toml, read};
+use shared::machine::MachineSettings;
 
-const FAULT: Option<Fault> = Some(Fault::FollowingError { axis: 1 });
-
-/// A controller on a port of its own, which runs as fast as it can; it serves so many connections, one after another.
-fn controller(connections: usize, fault: Option<Fault>) -> String {
-    controller_with(Settings::default(), connections, fault)
+/// A file among the examples.
+macro_rules! example {
+    ($name:literal) => {
+        concat!(env!("CARGO_MANIFEST_DIR"), "/../examples/", $name)
+    };
 }
 
-fn controller_with(settings: Settings, connections: usize, fault: Option<Fault>) -> String {
+/// Switches that no job here comes to.
+const FAR: [f64; 3] = [1e6; 3];
+
+/// A controller of the router on a port of its own, which runs as fast as it can; it serves so many connections, one after another. With a fault, a drive has reported one that is gone.
+fn controller(connections: usize, fault: bool) -> String {
+    controller_of(Some(read(example!("machine.toml")).unwrap()), connections, fault, FAR)
+}
+
+/// The same of any machine, with switches so far below x and y and above z, in mm.
+fn controller_of(machine: Option<MachineSettings>, connections: usize, fault: bool, switches: [f64; 3]) -> String {
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();
     let port = format!("tcp:{}", listener.local_addr().unwrap());
     thread::spawn(move || {
-        let mut controller = Controller::new(settings);
-        controller.set_fault(fault);
+        let mut controller = Controller::new(Settings::new(machine)).unwrap();
+        if fault {
+            controller.rig().pins.drive_fault ^= 0b010;
+            controller.tick();
+            controller.rig().pins.drive_fault ^= 0b010;
+        }
         for stream in listener.incoming().take(connections) {
             let mut stream = stream.unwrap();
             stream.set_read_timeout(Some(std::time::Duration::from_micros(200))).unwrap();
@@ -34,6 +48,9 @@ fn controller_with(settings: Settings, connections: usize, fault: Option<Fault>)
                     Err(_) => break,
                 }
                 for _ in 0..20 {
+                    let [x, y, z] = controller.rig().axes.map(|axis| axis.place());
+                    controller.rig().pins.low = u8::from(x <= -switches[0]) | u8::from(y <= -switches[1]) << 1;
+                    controller.rig().pins.high = u8::from(z >= switches[2]) << 2;
                     controller.tick();
                 }
                 if stream.write_all(&controller.take_output()).is_err() {
@@ -46,7 +63,7 @@ fn controller_with(settings: Settings, connections: usize, fault: Option<Fault>)
 }
 
 fn hodograph(arguments: &[&str]) -> Output {
-    let job = concat!(env!("CARGO_MANIFEST_DIR"), "/../examples/farouki2018.toml");
+    let job = example!("farouki2018.toml");
     let arguments = arguments.iter().map(|&argument| if argument == "JOB" { job } else { argument });
     Command::new(env!("CARGO_BIN_EXE_hodograph")).args(arguments).output().unwrap()
 }
@@ -57,12 +74,12 @@ fn json(output: &Output) -> serde_json::Value {
     serde_json::from_slice(&output.stdout).unwrap()
 }
 
-/// The controller does to the last bit what the simulator does.
+/// The controller does to the last bit what the simulator does. At the paper's feed the router's drives could not follow.
 #[test]
 fn a_job_arrives_and_runs_as_simulated() {
-    let port = controller(1, None);
-    let streamed = json(&hodograph(&["stream", "JOB", "--port", &port, "--json", "-"]));
-    let simulated = json(&hodograph(&["simulate", "JOB", "--json", "-"]));
+    let port = controller(1, false);
+    let streamed = json(&hodograph(&["stream", "JOB", "--port", &port, "--from-here", "--feed", "120", "--json", "-"]));
+    let simulated = json(&hodograph(&["simulate", "JOB", "--feed", "120", "--json", "-"]));
     assert_eq!(streamed["setpoint_hash"], simulated["setpoint_hash"]);
     assert_eq!(streamed["ticks"], simulated["ticks"]);
     assert_eq!(streamed["sent"], streamed["acknowledged"]);
@@ -71,7 +88,7 @@ fn a_job_arrives_and_runs_as_simulated() {
 
 #[test]
 fn a_monitor_sees_the_controller() {
-    let port = controller(1, FAULT);
+    let port = controller(1, true);
     let output = hodograph(&["monitor", "--port", &port, "--json", "--count", "2", "--every", "20"]);
     assert!(output.status.success());
     let text = String::from_utf8(output.stdout).unwrap();
@@ -79,7 +96,7 @@ fn a_monitor_sees_the_controller() {
     assert_eq!(lines.len(), 2);
     assert_eq!(
         (&lines[1]["state"], &lines[1]["fault"]),
-        (&"fault".into(), &"axis 1 is too far from its setpoint".into())
+        (&"fault".into(), &"the drive of axis 1 reports a fault".into())
     );
 }
 
@@ -88,7 +105,7 @@ fn a_monitor_sees_the_controller() {
 fn what_cannot_be_is_said_in_one_sentence() {
     // A port that was free a moment ago: nobody listens there.
     let free = format!("tcp:{}", TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap());
-    let faulty = controller(1, FAULT);
+    let faulty = controller(1, true);
     for (port, status, said) in [
         (free.as_str(), 2, "cannot be opened"),
         ("tcp:nowhere", 2, "cannot be opened"),
@@ -96,7 +113,7 @@ fn what_cannot_be_is_said_in_one_sentence() {
         (
             faulty.as_str(),
             1,
-            "axis 1 is too far from its setpoint; mend its cause and acknowledge it (hodograph monitor",
+            "the drive of axis 1 reports a fault; mend its cause and acknowledge it (hodograph monitor",
         ),
     ] {
         let output = hodograph(&["stream", "JOB", "--port", port]);
@@ -109,25 +126,27 @@ fn what_cannot_be_is_said_in_one_sentence() {
 /// After a fault nothing runs before somebody has taken notice; then the job does.
 #[test]
 fn a_fault_is_acknowledged_from_the_command_line() {
-    let port = controller(3, FAULT);
-    let refused = hodograph(&["stream", "JOB", "--port", &port, "--from-here"]);
+    let port = controller(3, true);
+    let refused = hodograph(&["stream", "JOB", "--port", &port, "--from-here", "--feed", "120"]);
     assert_eq!(refused.status.code(), Some(1));
     let asked = hodograph(&["monitor", "--port", &port, "--act", "acknowledge", "--act", "override=150"]);
     assert!(asked.status.success(), "{}", String::from_utf8_lossy(&asked.stderr));
     assert_eq!(String::from_utf8(asked.stdout).unwrap(), "acknowledge: done\noverride=150: done\n");
-    json(&hodograph(&["stream", "JOB", "--port", &port, "--json", "-"]));
+    json(&hodograph(&["stream", "JOB", "--port", &port, "--from-here", "--feed", "120", "--json", "-"]));
 }
 
 /// The first refusal ends a row of actions, in one sentence with status 1; what is no action never reaches the controller.
 #[test]
 fn a_refused_action_ends_the_row() {
-    let port = controller(1, None);
+    let port = controller(1, false);
     let output =
         hodograph(&["monitor", "--port", &port, "--act", "override=90", "--act", "hold", "--act", "acknowledge"]);
     let errors = String::from_utf8(output.stderr).unwrap();
     assert_eq!(output.status.code(), Some(1), "{errors}");
     assert_eq!(String::from_utf8(output.stdout).unwrap(), "override=90: done\n");
-    assert!(errors.contains("hold was refused: nothing is in motion") && errors.trim_end().lines().count() == 1);
+    assert!(
+        errors.contains("hold was refused: the machine is in state idle") && errors.trim_end().lines().count() == 1
+    );
     for action in ["override=0", "jump"] {
         let output = hodograph(&["monitor", "--port", "tcp:nowhere", "--act", action]);
         assert_eq!(output.status.code(), Some(2));
@@ -135,7 +154,7 @@ fn a_refused_action_ends_the_row() {
 }
 
 fn machine(port: &str, arguments: &[&str]) -> Output {
-    let router = concat!(env!("CARGO_MANIFEST_DIR"), "/../examples/machine.toml");
+    let router = example!("machine.toml");
     let arguments: Vec<&str> = arguments.iter().map(|&word| if word == "ROUTER" { router } else { word }).collect();
     hodograph(&[&["machine", "--port", port], arguments.as_slice()].concat())
 }
@@ -143,32 +162,35 @@ fn machine(port: &str, arguments: &[&str]) -> Output {
 /// A machine's file goes to the controller and comes back as a file that says the same.
 #[test]
 fn a_machine_goes_there_and_back() {
-    let port = controller(3, None);
+    let port = controller(3, false);
     let written = machine(&port, &["ROUTER", "--write"]);
     let text = String::from_utf8(written.stdout).unwrap();
     assert!(written.status.success(), "{}", String::from_utf8_lossy(&written.stderr));
     assert!(text.starts_with("three-axis router: 3 axes") && text.ends_with("the controller keeps it\n"), "{text}");
-    let read = machine(&port, &["--read"]);
-    assert!(read.status.success(), "{}", String::from_utf8_lossy(&read.stderr));
-    let back = host_sim::machine::from_toml("back", &String::from_utf8(read.stdout).unwrap()).unwrap();
-    let sent = concat!(env!("CARGO_MANIFEST_DIR"), "/../examples/machine.toml");
-    assert_eq!(back, host_sim::machine::read(sent).unwrap());
+    let found = machine(&port, &["--read"]);
+    assert!(found.status.success(), "{}", String::from_utf8_lossy(&found.stderr));
+    let back = from_toml("back", &String::from_utf8(found.stdout).unwrap()).unwrap();
+    let sent = example!("machine.toml");
+    assert_eq!(back, read(sent).unwrap());
     let file = std::path::PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("router-read.toml");
-    let read = machine(&port, &["--read", "-o", file.to_str().unwrap()]);
-    assert!(read.status.success() && read.stdout.is_empty());
-    assert_eq!(host_sim::machine::read(file.to_str().unwrap()).unwrap(), back);
+    let found = machine(&port, &["--read", "-o", file.to_str().unwrap()]);
+    assert!(found.status.success() && found.stdout.is_empty());
+    assert_eq!(read(file.to_str().unwrap()).unwrap(), back);
 }
 
 /// A controller that keeps no machine, one that refuses it, and one that is not there: one sentence each. A file that will not do
 /// never reaches it.
 #[test]
 fn a_machine_that_does_not_get_there_is_said_in_one_sentence() {
-    let empty = controller(1, None);
-    let refusing = controller_with(Settings { keeps_image: false, ..Settings::default() }, 2, None);
+    let empty = controller_of(None, 1, false, FAR);
+    let refusing = controller(1, false);
+    // An axis that no path moves.
+    let turned = std::path::PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("turned.toml");
+    let text = std::fs::read_to_string(example!("machine.toml")).unwrap().replace("name = \"z\"", "name = \"a\"");
+    std::fs::write(&turned, text).unwrap();
     for (port, arguments, status, said) in [
         (empty.as_str(), &["--read"][..], 1, "the controller keeps no machine"),
-        (&refusing, &["ROUTER", "--write"], 1, "the machine was refused: this controller cannot do that"),
-        (&refusing, &["--read"], 1, "the machine was refused: this controller cannot do that"),
+        (&refusing, &[turned.to_str().unwrap(), "--write"], 1, "the machine was refused: "),
         ("tcp:nowhere", &["ROUTER", "--write"], 2, "cannot be opened"),
         ("tcp:nowhere", &["no-such-file.toml", "--write"], 2, "no-such-file.toml: cannot be read"),
     ] {
@@ -183,4 +205,34 @@ fn a_machine_that_does_not_get_there_is_said_in_one_sentence() {
         assert_eq!(machine("tcp:nowhere", arguments).status.code(), Some(2));
     }
     assert_eq!(hodograph(&["machine", "--read"]).status.code(), Some(2));
+}
+
+/// Before homing a job in machine coordinates is refused; the search for home is one action; after it the job is refused where the
+/// machine does not stand at its start, and run where it does.
+#[test]
+fn homing_and_machine_coordinates() {
+    let router = read(example!("machine.toml")).unwrap();
+    let port = controller_of(Some(router), 5, false, [7.3, 3.1, 4.2]);
+    let refused = |job: &str, said: &str| {
+        let output = hodograph(&["stream", job, "--port", &port]);
+        let errors = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(1), "{errors}");
+        assert!(errors.contains(said) && errors.trim_end().lines().count() == 1, "{errors}");
+    };
+    let line = |x: f64| {
+        let file = std::path::PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(format!("line-{x}.toml"));
+        let text = format!(
+            "units = \"mm\"\nclosed = false\nrest = true\n[feed]\nrate = 1200.0\n\
+             [[segment]]\nline = {{ start = [{x:.1}, 2.0], to = [22.0, 12.0] }}\n"
+        );
+        std::fs::write(&file, text).unwrap();
+        file.to_str().unwrap().to_owned()
+    };
+    refused(&line(2.0), "the position of axis 0 is unknown; home it");
+    let asked = hodograph(&["monitor", "--port", &port, "--act", "home"]);
+    assert!(asked.status.success(), "{}", String::from_utf8_lossy(&asked.stderr));
+    refused(&line(5.0), "axis 0 does not stand where the job begins");
+    let ran = json(&hodograph(&["stream", &line(2.0), "--port", &port, "--json", "-"]));
+    assert_eq!(ran["sent"], ran["acknowledged"]);
+    refused(&line(2.0), "axis 0 does not stand where the job begins");
 }

@@ -46,7 +46,9 @@ pub fn commands() -> Vec<Command> {
     let arc = Shape::Arc { radius: Complex::new(1.0, 0.0), sweep: 1.5, ratio: 1.0 };
     let w = [Complex::new(1.0, 0.0), Complex::new(0.5, 0.25), Complex::new(-0.125, 0.25)];
     let ramp = Some(Ramp { length: 0.25, factor: 0.25 });
-    let ph = Piece { start: ramp, end: ramp, ..piece(Shape::Ph { preimage: w, offset: 0.25 }) };
+    // The first piece says where z is, or no later one could move it.
+    let rests = Some(Travel { from: [Fixed(0)], to: [Fixed(0)] });
+    let ph = Piece { start: ramp, end: ramp, further: rests, ..piece(Shape::Ph { preimage: w, offset: 0.25 }) };
     let further = Some(Travel { from: [Fixed(0)], to: [Fixed(262_144)] });
     let motion = [
         MotionCommand::Hold,
@@ -64,13 +66,13 @@ pub fn commands() -> Vec<Command> {
         Action::ReadImage { offset: 64 },
     ];
     let mut commands = vec![
-        Command::Begin(HEADER),
+        Command::Begin(HEADER, Coordinates::Machine),
         Command::Piece(ph),
         Command::Piece(piece(arc)),
         Command::Piece(Piece { further, ..line }),
         Command::Piece(Piece { last: Some([Fixed(262_144), Fixed(131_072), Fixed(0)]), ..line }),
         Command::Run,
-        Command::Run,
+        Command::Begin(HEADER, Coordinates::Relative),
         Command::Abort,
         Command::Status,
         Command::Hello { version: VERSION, session: SESSION },

@@ -4,11 +4,12 @@
 use std::collections::VecDeque;
 
 use shared::active::ActivePiece;
+use shared::control::Start;
 use shared::executor::{Executor, Pieces, State};
 use shared::fixed::{Fixed, Position};
 use shared::link::action::{CHUNK_SIZE, IMAGE_SIZE};
 use shared::link::{Action, Answer, Chunk, End, Ending, Frame, Identity, Machine, Refusal, Telemetry};
-use shared::loader::Motion;
+use shared::loader::Bounds;
 use shared::motion::MotionCommand;
 use shared::safety::{Coordinates, Refused};
 use shared::supply::PathTime;
@@ -142,14 +143,19 @@ impl Machine for StrictMachine {
         true
     }
 
-    fn start(&mut self, motion: &Motion<f32>, coordinates: Coordinates, [x, y]: [Fixed; 2]) -> Result<(), Refusal> {
-        if coordinates == Coordinates::Machine && !self.known {
+    fn bounds(&self, _: Coordinates) -> Option<Bounds> {
+        None
+    }
+
+    fn start(&mut self, start: &Start) -> Result<(), Refusal> {
+        let [x, y] = start.at;
+        if start.coordinates == Coordinates::Machine && !self.known {
             return Err(Refusal::Machine(Refused::PositionUnknown { axis: 0 }));
         }
         assert!(!self.is_on_path() && !self.queue.pieces.is_empty());
         check_position([x, y, Fixed(0)]);
         self.executor.stand_at([x, y, Fixed(0)]);
-        self.executor.begin(motion);
+        self.executor.begin(&start.motion);
         self.started += 1;
         Ok(())
     }

@@ -83,8 +83,8 @@ fn start(bench: &mut Rig, text: &str) -> Result<(), DirectiveError> {
     let job = Job::from_toml("line.toml", text).unwrap();
     let path = Path::new(&job, Order::First).unwrap();
     let pieces: Vec<_> = path.wire().collect();
-    let start = load(&mut bench, &path.header, &pieces, Coordinates::Machine);
-    ask(&mut bench, Directive::Start(start))
+    let start = load(bench, &path.header, &pieces, Coordinates::Machine);
+    ask(bench, Directive::Start(start))
 }
 
 fn resolution(axis: &Axis) -> f64 {

@@ -1,7 +1,7 @@
 //! A controller's end of the link against bytes of any kind, against actions, and against a host that vanishes.
 #![allow(clippy::unwrap_used, reason = "a failed test says where")]
 
-use host_sim::controller::{Alone, Controller, Settings, checksum};
+use host_sim::controller::{Controller, checksum};
 use proptest::prelude::*;
 use shared::complex::Complex;
 use shared::error::PathError;
@@ -11,10 +11,12 @@ use shared::link::{
     Action, Answer, Chunk, Command, Decoder, Endpoint, NO_SESSION, Received, Refusal, Report, Sender, SenderError,
     Telemetry, VERSION, encode,
 };
+use shared::machine::HostLost;
 use shared::motion::MotionCommand;
 use shared::pace::PaceLimits;
 use shared::piece::{Header, Order, Piece, Shape};
 use shared::safety::{Coordinates, Refused};
+use tests::bench::{controller, mill};
 use tests::link_script::{play, wrap};
 use tests::strict_machine::StrictMachine;
 
@@ -49,16 +51,16 @@ fn say(controller: &mut Controller, sequence: u16, command: &Command) -> Vec<Rep
     controller.take_output().into_iter().filter_map(|byte| decoder.push(byte)).map(said).collect()
 }
 
-fn open(settings: Settings) -> Controller {
-    let mut controller = Controller::new(settings);
+fn open(host_lost: HostLost) -> Controller {
+    let mut controller = controller(63, host_lost);
     let answer = say(&mut controller, 0, &Command::Hello { version: VERSION, session: SESSION });
     assert!(matches!(answer[..], [Report::Hello { session: SESSION, .. }]), "{answer:?}");
     controller
 }
 
-fn running(settings: Settings) -> Controller {
-    let mut controller = open(settings);
-    say(&mut controller, 1, &Command::Begin(HEADER));
+fn running(host_lost: HostLost) -> Controller {
+    let mut controller = open(host_lost);
+    say(&mut controller, 1, &Command::Begin(HEADER, Coordinates::Relative));
     say(&mut controller, 2, &Command::Piece(line()));
     assert!(matches!(say(&mut controller, 3, &Command::Run)[..], [Report::Ack { next: 4, .. }]));
     controller
@@ -80,10 +82,10 @@ fn pass(controller: &mut Controller, ticks: u32) {
 /// A host that falls silent leaves what was configured: the end of the job, or rest on the path before it.
 #[test]
 fn a_host_that_vanishes_leaves_what_was_configured() {
-    for (alone, state) in [(Alone::Finish, State::Finished), (Alone::Brake, State::Held)] {
-        let mut controller = running(Settings { alone, ..Settings::default() });
+    for (host_lost, state) in [(HostLost::Finish, State::Finished), (HostLost::Brake, State::Held)] {
+        let mut controller = running(host_lost);
         pass(&mut controller, 8_000);
-        assert_eq!(controller.state(), state, "{alone:?}");
+        assert_eq!(controller.state(), state, "{host_lost:?}");
     }
 }
 
@@ -121,8 +123,8 @@ fn coordinates_reach_the_machine() {
 /// for as long as its session lasts.
 #[test]
 fn a_refusal_is_said_again() {
-    let mut controller = open(Settings::default());
-    say(&mut controller, 1, &Command::Begin(HEADER));
+    let mut controller = open(HostLost::Finish);
+    say(&mut controller, 1, &Command::Begin(HEADER, Coordinates::Relative));
     let faulty = Command::Piece(Piece { feed: -1.0, ..line() });
     let refused = Report::Refused { sequence: 2, reason: Refusal::Path(PathError::Feed { feed: -1.0 }) };
     assert_eq!(say(&mut controller, 2, &faulty), [refused]);
@@ -141,7 +143,7 @@ fn a_refusal_is_said_again() {
 /// of its own only then.
 #[test]
 fn a_motion_without_a_host_is_left_to_the_next_one() {
-    let mut controller = running(Settings { alone: Alone::Brake, ..Settings::default() });
+    let mut controller = running(HostLost::Brake);
     let ask = |controller: &mut Controller, session: u32, sequence: u16, command: &Command| {
         controller.take_output();
         let session_of = if matches!(command, Command::Hello { .. }) { NO_SESSION } else { session };
@@ -159,7 +161,7 @@ fn a_motion_without_a_host_is_left_to_the_next_one() {
     assert_eq!(controller.state(), State::Held);
     assert!(matches!(ask(&mut controller, SESSION + 1, 0, &hello), Some(Report::Hello { .. })));
     assert_eq!(controller.state(), State::Held);
-    let begin = Command::Begin(HEADER);
+    let begin = Command::Begin(HEADER, Coordinates::Relative);
     let busy = Some(Report::Refused { sequence: 1, reason: Refusal::Busy });
     assert_eq!(ask(&mut controller, SESSION + 1, 1, &begin), busy);
     let resume = Command::Act(Action::Motion(MotionCommand::Resume));
@@ -176,7 +178,7 @@ fn a_motion_without_a_host_is_left_to_the_next_one() {
 /// A late copy of a hold, a resume or the hello itself changes nothing.
 #[test]
 fn nothing_is_done_twice() {
-    let mut controller = running(Settings::default());
+    let mut controller = running(HostLost::Finish);
     pass(&mut controller, 100);
     let [hold, resume] = [MotionCommand::Hold, MotionCommand::Resume].map(Action::Motion);
     assert_eq!(act(&mut controller, 0, hold), Ok(Answer::Done));
@@ -191,7 +193,7 @@ fn nothing_is_done_twice() {
 
 #[test]
 fn another_version_is_refused() {
-    let mut controller = Controller::new(Settings::default());
+    let mut controller = controller(63, HostLost::Finish);
     let answer = say(&mut controller, 0, &Command::Hello { version: VERSION + 1, session: SESSION });
     assert_eq!(answer, [Report::Refused { sequence: 0, reason: Refusal::Version { version: VERSION } }]);
 }
@@ -199,31 +201,37 @@ fn another_version_is_refused() {
 /// A configuration image goes there in chunks and comes back the same; one that is not whole is not kept.
 #[test]
 fn a_configuration_image_goes_there_and_back() {
-    let image: Vec<u8> = (0..1_000_u32).map(|k| (k * k % 251) as u8).collect();
-    let mut controller = open(Settings::default());
+    let image = shared::machine::image::encode(&mill(HostLost::Finish)).unwrap();
+    let length = image.len() as u16;
+    let mut controller = open(HostLost::Finish);
     let mut number = 0..;
     let mut ask = |action| act(&mut controller, number.next().unwrap(), action);
     for (k, part) in image.chunks(64).enumerate() {
         let chunk = Chunk::new(part).unwrap();
         assert_eq!(ask(Action::WriteImage { offset: 64 * k as u16, chunk }), Ok(Answer::Done));
     }
-    assert_eq!(ask(Action::CommitImage { length: 1_000, crc: 1 }), Err(Refusal::Image));
-    assert_eq!(ask(Action::CommitImage { length: 1_000, crc: checksum(&image) }), Ok(Answer::Done));
+    assert_eq!(ask(Action::CommitImage { length, crc: 1 }), Err(Refusal::Image));
+    assert_eq!(ask(Action::CommitImage { length, crc: checksum(&image) }), Ok(Answer::Done));
     let mut back = Vec::new();
-    while let Ok(Answer::Image { length: 1_000, chunk, .. }) = ask(Action::ReadImage { offset: back.len() as u16 }) {
+    while let Ok(Answer::Image { length: found, chunk, .. }) = ask(Action::ReadImage { offset: back.len() as u16 }) {
+        assert_eq!(found, length);
         match chunk.bytes().unwrap() {
             [] => break,
             bytes => back.extend_from_slice(bytes),
         }
     }
-    assert_eq!(back, image);
+    assert_eq!(back, image.as_slice());
+    // What is no machine is not kept, whole or not.
+    let noise = Chunk::new(&[7; 64]).unwrap();
+    assert_eq!(ask(Action::WriteImage { offset: 0, chunk: noise }), Ok(Answer::Done));
+    assert_eq!(ask(Action::CommitImage { length: 64, crc: checksum(&[7; 64]) }), Err(Refusal::Image));
     let chunk = Chunk::new(&[1; 64]).unwrap();
     assert_eq!(ask(Action::WriteImage { offset: 4_090, chunk }), Err(Refusal::Range));
 }
 
 #[test]
 fn an_override_outside_its_range_is_refused() {
-    let mut controller = running(Settings::default());
+    let mut controller = running(HostLost::Finish);
     for (number, percent) in [0, 201, 255].into_iter().enumerate() {
         let action = Action::Motion(MotionCommand::Override { percent });
         assert_eq!(act(&mut controller, number as u16, action), Err(Refusal::Range));
@@ -243,7 +251,7 @@ proptest! {
     /// Any bytes at all: no panic, and nothing moves.
     #[test]
     fn noise_moves_nothing(bytes in proptest::collection::vec(0_u8.., 0..3_000)) {
-        let mut controller = open(Settings::default());
+        let mut controller = open(HostLost::Finish);
         controller.receive(&bytes);
         pass(&mut controller, 50);
         prop_assert_eq!(controller.state(), State::Idle);
@@ -256,7 +264,7 @@ proptest! {
     fn whole_frames_of_anything_are_taken_in_range_or_refused(
         content in proptest::collection::vec((0_u8..6, proptest::collection::vec(0_u8.., 0..100)), 0..20),
     ) {
-        let mut controller = open(Settings::default());
+        let mut controller = open(HostLost::Finish);
         let mut next = 1_u16;
         for (kind, bytes) in content {
             // A tuple of bytes has no length in front, as a message has none; the first one says which command it is.

@@ -5,13 +5,14 @@
 
 use std::collections::VecDeque;
 
-use host_sim::controller::{Controller, Settings};
 use host_sim::job::Job;
 use host_sim::path::Path;
 use shared::executor::State;
 use shared::link::sender::RECEIVE_SIZE;
 use shared::link::{Command, Event, Report, Sender, encode};
 use shared::piece::{Header, Order, Piece, Shape};
+use shared::safety::Coordinates;
+use tests::bench::bystander;
 
 const SESSION: u32 = 0x1234_5678;
 
@@ -68,8 +69,8 @@ fn send(
     until_loaded: bool,
 ) -> Seen {
     const STEPS: u64 = 16;
-    let mut controller = Controller::new(Settings { capacity, ..Settings::default() });
-    let mut sender = Sender::new(SESSION, header, pieces).at_baud(baud);
+    let mut controller = bystander(capacity);
+    let mut sender = Sender::new(SESSION, header, pieces).in_coordinates(Coordinates::Relative).at_baud(baud);
     let (mut down, mut up) = (Wire::new(baud, latency_us), Wire::new(baud, latency_us));
     let mut seen = Seen { loaded_s: 0.0, starved: false, resent: 0, down: 0, up: 0 };
     for step in 0.. {

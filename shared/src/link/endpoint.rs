@@ -260,11 +260,20 @@ impl Endpoint {
             Command::Piece(piece) => self.load(machine, &piece),
             Command::Run => self.run(machine),
             Command::Abort => {
-                machine.stop();
-                self.job = match self.job {
-                    Job::Loading(_) | Job::Running(_) | Job::Leaving => Job::Ended(End::Early(Ending::Stopped)),
-                    Job::None | Job::Orphan => Job::None,
-                    Job::Ended(end) => Job::Ended(end),
+                self.job = match core::mem::replace(&mut self.job, Job::None) {
+                    Job::Running(_) | Job::Leaving => {
+                        machine.stop();
+                        Job::Leaving
+                    }
+                    Job::Orphan => {
+                        machine.stop();
+                        Job::Orphan
+                    }
+                    Job::Loading(_) => {
+                        machine.stop();
+                        Job::Ended(End::Early(Ending::Stopped))
+                    }
+                    job @ (Job::None | Job::Ended(_)) => job,
                 };
                 Ok(())
             }

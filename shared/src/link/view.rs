@@ -52,6 +52,16 @@ impl<const AXES: usize> Status<AXES> {
         }
     }
 
+    /// Whether a job may begin now. Errors: why not.
+    pub fn ready(&self) -> Result<(), Refusal> {
+        match (self.fault, self.machine, self.path) {
+            (Some(fault), ..) => Err(Refusal::Fault(fault)),
+            (None, safety::State::EStop, _) => Err(Refusal::Stopped),
+            (None, _, PathEnd::Running) => Err(Refusal::Busy),
+            _ => Ok(()),
+        }
+    }
+
     /// How far a path in these coordinates may go on this machine; none where nobody knows where it stands.
     pub fn bounds(&self, machine: &Machine, coordinates: Coordinates) -> Option<Bounds> {
         let limits = machine.soft_limits();

@@ -64,11 +64,11 @@ pub enum Kind {
     Homed,
     /// Asked to run a job.
     Start,
-    /// Asked to come to rest on the path and wait.
+    /// Asked to come to rest on the path and wait, by a person or because the host has vanished.
     Hold,
     /// Asked to go on.
     Resume,
-    /// Asked to come to rest and leave the path, by a person or because the host has vanished.
+    /// Asked to come to rest and leave the path, by a person.
     Cancel,
     /// The setpoints have come to rest.
     AtRest,
