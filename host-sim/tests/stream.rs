@@ -129,9 +129,9 @@ fn a_fault_is_acknowledged_from_the_command_line() {
     let port = controller(3, true);
     let refused = hodograph(&["stream", "JOB", "--port", &port, "--from-here", "--feed", "120"]);
     assert_eq!(refused.status.code(), Some(1));
-    let asked = hodograph(&["monitor", "--port", &port, "--act", "acknowledge", "--act", "override=150"]);
+    let asked = hodograph(&["monitor", "--port", &port, "--act", "acknowledge", "--act", "override=50"]);
     assert!(asked.status.success(), "{}", String::from_utf8_lossy(&asked.stderr));
-    assert_eq!(String::from_utf8(asked.stdout).unwrap(), "acknowledge: done\noverride=150: done\n");
+    assert_eq!(String::from_utf8(asked.stdout).unwrap(), "acknowledge: done\noverride=50: done\n");
     json(&hodograph(&["stream", "JOB", "--port", &port, "--from-here", "--feed", "120", "--json", "-"]));
 }
 

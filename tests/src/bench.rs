@@ -1,5 +1,6 @@
 //! Controllers without hardware for tests: one on [`host_sim::rig`] that is asked, and loaded with a path that has passed the loader; and
 //! one behind a line.
+#![allow(clippy::expect_used, reason = "a failed test says where")]
 
 use host_sim::controller::{Controller, Settings as ControllerSettings};
 use host_sim::rig::{Queue, Rig};

@@ -4,7 +4,6 @@
 use proptest::prelude::*;
 use serde::de::DeserializeOwned;
 use shared::link::{Command, Decoder, FRAME_SIZE, Frame, NO_SESSION, Report, encode};
-use shared::safety::Coordinates;
 use tests::link_script::{SESSION, commands, reports, up_to_four_bits_are_found};
 
 /// What a decoder in the session finds in these bytes: messages, as far as they are of the session.

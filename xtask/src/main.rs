@@ -25,7 +25,7 @@ struct Cli {
 enum Verb {
     Build(build::Build),
     Flash(flash::Flash),
-    Emulate(emulate::Emulate),
+    Emulate(Box<emulate::Emulate>),
     Budget(budget::Budget),
     Test(test::Test),
     Ci(ci::Ci),
