@@ -10,6 +10,7 @@
 //! | [`offset`] | the exact trimmed offset of a contour |
 //! | [`job`] | what a person wants: contour, offset, feed; the contour form |
 //! | [`path`] | the exact curves of the tool's centre in f64, and the pieces that a controller gets of them |
+//! | [`approach`] | the way to where a job begins |
 //! | [`machine`] | a machine's file, and what a controller makes of it |
 //! | [`pacing`] | how fast the pace of a path may change within what the axes bear |
 //! | [`prepare`] | a checked job as bytes, for a sender |
@@ -25,6 +26,7 @@
 //! | [`reproduce`] | published experiments beside their published figures |
 //! | [`report`] | pictures and tables of results in one HTML file |
 
+pub mod approach;
 pub mod contour;
 pub mod controller;
 pub mod input;

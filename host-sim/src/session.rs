@@ -50,6 +50,14 @@ impl<'a> Session<'a> {
         })
     }
 
+    /// How the machine is now.
+    pub fn look(&mut self) -> Result<Telemetry, StreamError> {
+        self.wait(|event| match event {
+            Event::Telemetry(telemetry) => Some(telemetry),
+            _ => None,
+        })
+    }
+
     /// Waits until the machine does not look for home any more, and returns how it is then. Errors: it takes ten minutes.
     pub fn until_homed(&mut self) -> Result<Telemetry, StreamError> {
         let start = Instant::now();

@@ -79,7 +79,7 @@ fn json(output: &Output) -> serde_json::Value {
 fn a_job_arrives_and_runs_as_simulated() {
     let port = controller(1, false);
     let streamed = json(&hodograph(&["stream", "JOB", "--port", &port, "--from-here", "--feed", "120", "--json", "-"]));
-    let simulated = json(&hodograph(&["simulate", "JOB", "--feed", "120", "--json", "-"]));
+    let simulated = json(&hodograph(&["simulate", "JOB", "--rest", "--feed", "120", "--json", "-"]));
     assert_eq!(streamed["setpoint_hash"], simulated["setpoint_hash"]);
     assert_eq!(streamed["ticks"], simulated["ticks"]);
     assert_eq!(streamed["sent"], streamed["acknowledged"]);
@@ -212,7 +212,7 @@ fn a_machine_that_does_not_get_there_is_said_in_one_sentence() {
 #[test]
 fn homing_and_machine_coordinates() {
     let router = read(example!("machine.toml")).unwrap();
-    let port = controller_of(Some(router), 5, false, [7.3, 3.1, 4.2]);
+    let port = controller_of(Some(router), 6, false, [7.3, 3.1, 4.2]);
     let refused = |job: &str, said: &str| {
         let output = hodograph(&["stream", job, "--port", &port]);
         let errors = String::from_utf8(output.stderr).unwrap();
@@ -235,4 +235,6 @@ fn homing_and_machine_coordinates() {
     let ran = json(&hodograph(&["stream", &line(2.0), "--port", &port, "--json", "-"]));
     assert_eq!(ran["sent"], ran["acknowledged"]);
     refused(&line(2.0), "axis 0 does not stand where the job begins");
+    let ran = json(&hodograph(&["stream", &line(5.0), "--port", &port, "--approach", "1200", "--json", "-"]));
+    assert_eq!(ran["sent"], ran["acknowledged"]);
 }

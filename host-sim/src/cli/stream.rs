@@ -6,9 +6,12 @@ use std::io::Write;
 use std::time::Instant;
 
 use clap::Args;
+use host_sim::approach;
 use host_sim::input::InputError;
+use host_sim::path::Path;
+use host_sim::session::Session;
 use host_sim::stream::{Happening, StreamError, Wish, stream};
-use host_sim::transport;
+use host_sim::transport::{self, Transport};
 use indicatif::ProgressBar;
 use shared::link::{Action, Refusal, SenderError};
 use shared::motion::MotionCommand;
@@ -23,6 +26,8 @@ use super::output::{failed, json};
 
 /// Send a job to a controller and run it, with progress
 ///
+/// A job begins and ends at rest. It begins where the machine stands: its first point, or anywhere with --from-here.
+///
 /// On a terminal: h or space holds, r or space resumes, + and - change the override by 10 %, b runs piece by piece or not, c cancels, g
 /// homes, a acknowledges a fault, q stops at once
 #[derive(Args)]
@@ -33,6 +38,9 @@ pub struct Stream {
     /// Run the job from where the machine stands; otherwise its coordinates are the machine's, every axis of which has to know where it is
     #[arg(long)]
     from_here: bool,
+    /// Go to where the job begins first, in a straight line at this feed in the job's units a minute; z stays where it is
+    #[arg(long, value_name = "FEED", conflicts_with = "from_here")]
+    approach: Option<f64>,
     /// The controller: a serial port, a file that is a line, or `tcp:HOST:PORT`
     #[arg(long)]
     port: String,
@@ -50,10 +58,14 @@ pub struct Stream {
 impl Stream {
     /// Sends, and shows how it goes.
     pub fn run(self) -> Result<(), Failure> {
-        let (_, path) = self.motion.path()?;
+        let (job, mut path) = self.motion.path()?;
+        path.header.rest = true;
         let pieces: Vec<Piece<f32>> = path.wire().collect();
         let mut log = Log::create(self.log.as_deref())?;
         let mut line = transport::open(&self.port, self.baud)?;
+        if let Some(feed) = self.approach {
+            self.go_to_start(&mut *line, &path, feed * job.units.mm() / 60.0)?;
+        }
         let bar = super::progress_of(pieces.len() as u64, "{pos} of {len} pieces, {msg}");
         let coordinates = if self.from_here { Coordinates::Relative } else { Coordinates::Machine };
         // One closure shows what the controller says, the other reads keys, which go on from it.
@@ -73,13 +85,7 @@ impl Stream {
         if let Some(name) = &self.json {
             json(name, &transfer)?;
         }
-        if let Err(error) = outcome {
-            return Err(if error.is_input() {
-                InputError::new(&self.port, error).into()
-            } else {
-                Failure::Run(format!("{}: {error}{}", self.port, remedy(&error, &self.port)))
-            });
-        }
+        outcome.map_err(|error| self.failure(&error))?;
         if self.json.as_deref() != Some("-") {
             println!("sent {}, acknowledged {}, resent {}", transfer.sent, transfer.acknowledged, transfer.resent);
             if let (Some(ticks), Some(time), Some(hash)) = (transfer.ticks, transfer.time_s, transfer.setpoint_hash) {
@@ -87,6 +93,29 @@ impl Stream {
             }
         }
         Ok(())
+    }
+}
+
+impl Stream {
+    /// Has the machine go to the first point of `path` at so many mm/s.
+    fn go_to_start(&self, line: &mut dyn Transport, path: &Path, feed: f64) -> Result<(), Failure> {
+        if !(feed > 0.0 && feed.is_finite()) {
+            return Err(InputError::new("--approach", "the feed must be a number above zero").into());
+        }
+        let position =
+            Session::open(line).and_then(|mut session| session.look()).map_err(|error| self.failure(&error))?;
+        let [x, y, _] = path.start();
+        let Some((header, piece)) = approach::line(position.setpoint, [x, y], feed) else { return Ok(()) };
+        let mut keys = Keys::new();
+        let (_, outcome) = stream(line, &header, &[piece], Coordinates::Machine, |_| {}, || wish(&mut keys));
+        outcome.map_err(|error| self.failure(&error))
+    }
+
+    fn failure(&self, error: &StreamError) -> Failure {
+        if error.is_input() {
+            return InputError::new(&self.port, error).into();
+        }
+        Failure::Run(format!("{}: {error}{}", self.port, remedy(error, &self.port)))
     }
 }
 
@@ -102,6 +131,7 @@ fn remedy(error: &StreamError, port: &str) -> String {
         Refusal::Machine(Refused::PositionUnknown { .. }) => {
             format!(" (hodograph monitor --port {port} --act home), or run it --from-here")
         }
+        Refusal::Machine(Refused::Away { .. }) => String::from(" (--approach FEED, or --from-here)"),
         _ => String::new(),
     }
 }
