@@ -218,3 +218,22 @@ fn a_foreign_limit_ends_a_search() {
     assert_eq!(bench.status.machine, State::Fault);
     assert!(matches!(bench.status.fault, Some(Fault::Limit { axis: 0, .. })));
 }
+
+/// A path that was never held against the travel ends where an axis leaves it: the last line of defence.
+#[test]
+fn a_setpoint_beyond_the_travel_is_a_fault() {
+    let switches = [Some((-17.3, false)), Some((-4.05, false)), Some((9.1, true))];
+    let mut bench = rig(&settings(ROUTER));
+    bench.tick();
+    ask(&mut bench, Directive::Home { axes: 0 }).unwrap();
+    search(&mut bench, &switches);
+    // The travel of y ends at 0.
+    start(&mut bench, &line([2.0, 2.0], [12.0, -3.0])).unwrap();
+    while bench.status.path == PathEnd::Running {
+        // The switch at the low end of y would act too.
+        bench.tick();
+    }
+    assert_eq!(bench.status.path, PathEnd::Faulted(Fault::SoftLimit { axis: 1 }));
+    let place = bench.axes[1].place() + 4.05;
+    assert!(place < 0.002 && place > -0.1, "{place}");
+}

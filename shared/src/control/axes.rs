@@ -6,7 +6,8 @@
 use core::fmt;
 
 use super::ring::Ring;
-use crate::fixed::{Fixed, Position};
+use crate::extent::SLACK_MM;
+use crate::fixed::{Fixed, Position, UNITS_PER_MM};
 use crate::machine::{AxisDrive, AxisName, AxisSettings, Drive, Machine, StepDrive};
 use crate::safety::Fault;
 use crate::servo::{Servo, ServoState};
@@ -77,6 +78,8 @@ pub struct Axes<const AXES: usize, const PORTS: usize, const SLOTS: usize> {
     has_steps: bool,
     /// Which coordinate of a position each axis follows; none where there is no axis.
     coordinates: [Option<u8>; AXES],
+    /// The lowest and the highest target of a path, with [`SLACK`].
+    travel: [[Fixed; 2]; AXES],
     /// Where each axis shall be now.
     targets: [Fixed; AXES],
 }
@@ -94,6 +97,9 @@ impl<const AXES: usize> Commands<AXES> {
     /// Nothing.
     pub const ZERO: Self = Self { commands: [0.0; AXES], levels: [0.0; AXES] };
 }
+
+/// What a setpoint may seem to leave the travel by: twice what the check before motion allows, [`crate::extent::SLACK_MM`].
+const SLACK: i32 = (2.0 * SLACK_MM * UNITS_PER_MM) as i32;
 
 /// A drive for a connector without a step axis: the slowest pulses there are, and never one.
 const STILL: StepDrive = StepDrive {
@@ -116,9 +122,13 @@ impl<const AXES: usize, const PORTS: usize, const SLOTS: usize> Axes<AXES, PORTS
         let mut settings = pins.map(|pins| STILL.on_pins(pins.step, pins.direction, SLOTS));
         let mut servos = [None; AXES];
         let mut coordinates = [None; AXES];
+        let mut travel = [[Fixed(0); 2]; AXES];
         let mut has_steps = false;
-        let places = settings.iter_mut().zip(pins).zip(servos.iter_mut().zip(&mut coordinates));
-        for ((number, axis), ((setting, pins), (servo, coordinate))) in (0..).zip(&machine.axes).zip(places) {
+        let places = settings.iter_mut().zip(pins).zip(servos.iter_mut().zip(coordinates.iter_mut().zip(&mut travel)));
+        for ((number, axis), ((setting, pins), (servo, (coordinate, travel)))) in (0..).zip(&machine.axes).zip(places) {
+            let [low, high] = axis.travel;
+            // Both are within 4 m, and 32 bits hold 8 m.
+            *travel = [Fixed(low.0.saturating_sub(SLACK)), Fixed(high.0.saturating_add(SLACK))];
             *coordinate = Some(match axis.name {
                 AxisName::X => 0,
                 AxisName::Y => 1,
@@ -145,7 +155,7 @@ impl<const AXES: usize, const PORTS: usize, const SLOTS: usize> Axes<AXES, PORTS
         }
         let steps = StepSettings::activate(&settings).map_err(AxesError::Steps)?;
         let step_state = steps.at_rest([Fixed(0); AXES]);
-        Ok(Self { servos, steps, step_state, has_steps, coordinates, targets: [Fixed(0); AXES] })
+        Ok(Self { servos, steps, step_state, has_steps, coordinates, travel, targets: [Fixed(0); AXES] })
     }
 
     /// Whether there are step axes.
@@ -225,6 +235,15 @@ impl<const AXES: usize, const PORTS: usize, const SLOTS: usize> Axes<AXES, PORTS
             }
         }
         self.step_state = self.steps.at_rest(self.targets);
+    }
+
+    /// The first of the axes whose position is known that would leave its travel.
+    #[inline(always)]
+    pub fn leaving(&self, targets: &[Fixed; AXES], known: u8) -> Option<u8> {
+        let inside = |[low, high]: [Fixed; 2], target: Fixed| low <= target && target <= high;
+        let axes = (0..).zip(self.travel.iter().zip(targets));
+        axes.into_iter()
+            .find_map(|(axis, (travel, target))| (known >> axis & 1 != 0 && !inside(*travel, *target)).then_some(axis))
     }
 
     /// Plays the ring, if there is anything to play and it is not played yet.

@@ -89,7 +89,7 @@ pub struct Control<const AXES: usize, const PORTS: usize, const SLOTS: usize> {
     /// What the path's coordinates need to become the machine's.
     offset: Position,
     axes: Axes<AXES, PORTS, SLOTS>,
-    /// An axis that could not keep up in the tick before.
+    /// An axis that could not keep up in the tick before, or that left its travel, which the checks before motion should not have let it.
     late: Option<Fault>,
     path: PathEnd,
     hash: SetpointHash,
@@ -147,13 +147,15 @@ impl<const AXES: usize, const PORTS: usize, const SLOTS: usize> Control<AXES, PO
             }
         });
         let targets = if started { self.axes.targets() } else { self.advance(allowed.state, &levels, pieces) };
+        let on_path = matches!(self.activity, Activity::Path);
+        let left = if on_path { self.axes.leaving(&targets, allowed.known) } else { None };
 
         let mut commands = Commands::ZERO;
         if allowed.drives {
             let half = if ring.is_played() { half.unwrap_or(None) } else { None };
             let (found, followed) = self.axes.follow(targets, half, ring);
             commands = found;
-            self.late = followed.err();
+            self.late = followed.err().or(left.map(|axis| Fault::SoftLimit { axis }));
         } else {
             self.axes.go_limp();
         }
