@@ -286,3 +286,26 @@ fn hold_resume_and_cancel_through_the_whole_tick() {
         assert!((place - left[axis] - way).abs() <= 1.0 / 640.0, "axis {axis} from {} to {place}", left[axis]);
     }
 }
+
+/// A feed that the drive's pulses do not allow: the machine stops for it, instead of losing steps. 187 pulses of 5 us fit into a tick, so
+/// x goes 300 mm/s at most.
+#[test]
+fn an_axis_that_cannot_keep_up_is_a_fault() {
+    for (feed, keeps) in [(290.0, true), (310.0, false)] {
+        let text =
+            JOB.replace("rate = 1800.0", &format!("rate = {:.1}", feed * 60.0)).replace("[6.0, 0.0]", "[606.0, 0.0]");
+        let text = text.split("[[segment]]\narc").next().unwrap();
+        let job = Job::from_toml("fast.toml", text).unwrap();
+        let path = Path::new(&job, Order::First).unwrap();
+        let pieces: Vec<_> = path.wire().collect();
+        let mut bench = rig(&settings(ROUTER));
+        bench.tick();
+        let start = load(&mut bench, &path.header, &pieces, Coordinates::Relative);
+        ask(&mut bench, Directive::Start(start)).unwrap();
+        while bench.status.path == PathEnd::Running {
+            bench.tick();
+        }
+        let end = if keeps { PathEnd::Finished } else { PathEnd::Faulted(Fault::Steps { axis: 0 }) };
+        assert_eq!(bench.status.path, end, "{feed} mm/s");
+    }
+}
