@@ -1,8 +1,8 @@
 //! The tick's hands: what is on the board for `shared`'s tick, and what it is fed with.
 
-use heapless::spsc::{Consumer, Producer, Queue};
+use heapless::spsc::{Consumer, Queue};
 use shared::active::ActivePiece;
-use shared::control::{Commands, Control, Directive, DirectiveError, Inputs};
+use shared::control::{Commands, Control, Directive, Inputs};
 use shared::machine::Machine;
 use shared::safety::ResetCause;
 use shared::supply::Source;
@@ -16,20 +16,11 @@ pub const PIECES: usize = 64;
 /// Length of the queue of directives; it holds one less.
 pub const DIRECTIVES: usize = 4;
 
-/// Length of the queue of answers; it holds one less, which is one for each directive and one more.
-pub const ANSWERS: usize = 8;
-
 /// Validated pieces on their way from the link to the tick.
 pub type PieceQueue = Queue<ActivePiece<f32>, PIECES>;
 
 /// Directives on their way from the link to the tick.
 pub type Directives = Queue<Directive, DIRECTIVES>;
-
-/// What came of a directive.
-pub type Answer = Result<(), DirectiveError>;
-
-/// Answers on their way back.
-pub type Answers = Queue<Answer, ANSWERS>;
 
 /// What the tick reads and writes on the board.
 pub struct Hands {
@@ -51,7 +42,6 @@ pub struct Tick {
     hands: Hands,
     pieces: Source<'static, f32>,
     directives: Consumer<'static, Directive>,
-    answers: Producer<'static, Answer>,
     powered: bool,
 }
 
@@ -63,20 +53,19 @@ impl Tick {
         hands: Hands,
         pieces: Source<'static, f32>,
         directives: Consumer<'static, Directive>,
-        answers: Producer<'static, Answer>,
     ) -> Self {
         let control = match Control::new(machine, &PINS, cause) {
             Ok(control) => control,
             // `kept` takes machines that this board can drive only.
             Err(_) => cortex_m::asm::udf(),
         };
-        Self { control, hands, pieces, directives, answers, powered: false }
+        Self { control, hands, pieces, directives, powered: false }
     }
 
     /// One tick, from the levels at the pins to what the drives get.
     #[inline(always)]
     pub fn tick(&mut self, mailbox: &Mailbox) {
-        let Self { control, hands, pieces, directives, answers, powered } = self;
+        let Self { control, hands, pieces, directives, powered } = self;
         let inputs = Inputs {
             pins: hands.inputs.read(),
             stopped: hands.enables.take_stop() | mailbox.take_button(),
@@ -90,8 +79,7 @@ impl Tick {
         }
         hands.drives.write(if outputs.drives { outputs.commands.levels } else { Commands::<AXES>::ZERO.levels });
         if let Some(answer) = outputs.answer {
-            // There is room: the link waits for each.
-            let _ = answers.enqueue(answer);
+            mailbox.answer(&answer);
         }
         mailbox.publish(&control.status(&outputs));
     }

@@ -12,7 +12,6 @@ use shared::motion::MotionCommand;
 use shared::safety::{Coordinates, State};
 use shared::supply::Sink;
 
-use crate::control::Answer as TickAnswer;
 use crate::hardware::Lamp;
 use crate::mailbox::MAILBOX;
 use crate::telemetry::Reporter;
@@ -42,8 +41,6 @@ pub struct Lines {
     pub pieces: Sink<'static, f32>,
     /// What is asked of it.
     pub directives: Producer<'static, Directive>,
-    /// What it says of that.
-    pub answers: Consumer<'static, TickAnswer>,
 }
 
 /// What the endpoint speaks through.
@@ -94,7 +91,7 @@ impl Queues {
             return Err(Refusal::Busy);
         }
         loop {
-            if let Some(answer) = self.lines.answers.dequeue() {
+            if let Some(answer) = MAILBOX.take_answer() {
                 return answer.map_err(Refusal::from);
             }
             cortex_m::asm::wfi();

@@ -5,7 +5,7 @@
 
 use core::sync::atomic::{AtomicBool, AtomicI32, AtomicU32, Ordering::Relaxed};
 
-use shared::control::{PathEnd, Status};
+use shared::control::{DirectiveError, PathEnd, Status, answer_of, answer_word};
 use shared::fixed::{Fixed, Position};
 use shared::safety::Fault;
 use shared::{motion, safety};
@@ -54,6 +54,8 @@ pub struct Mailbox {
     position: [AtomicI32; 3],
     /// Where they were when the tick began.
     actual: [AtomicI32; 3],
+    /// What came of the last directive, `answer_word`, until the link has taken it; or 0.
+    answer: AtomicU32,
     /// Whether the button was pressed since the last tick.
     button: AtomicBool,
     /// Whether it is pressed now.
@@ -79,6 +81,7 @@ impl Mailbox {
             known: AtomicU32::new(0),
             position: [const { AtomicI32::new(0) }; 3],
             actual: [const { AtomicI32::new(0) }; 3],
+            answer: AtomicU32::new(0),
             button: AtomicBool::new(false),
             pressed: AtomicBool::new(false),
         }
@@ -133,8 +136,8 @@ impl Mailbox {
             let [low, high] = &self.hash;
             let known = self.known.load(Relaxed);
             let status = Status {
-                machine: machine_state(self.machine.load(Relaxed)),
-                motion: motion_state(self.motion.load(Relaxed)),
+                machine: safety::State::from_number(self.machine.load(Relaxed) as u8).unwrap_or(safety::State::Fault),
+                motion: motion::State::from_number(self.motion.load(Relaxed) as u8).unwrap_or(motion::State::Idle),
                 path: PathEnd::from_word(self.path.load(Relaxed)),
                 fault: Fault::from_word(self.fault.load(Relaxed)),
                 known: known as u8,
@@ -153,6 +156,20 @@ impl Mailbox {
                 return status;
             }
         }
+    }
+
+    /// Leaves what came of a directive. The tick alone calls this.
+    #[inline(always)]
+    pub fn answer(&self, answer: &Result<(), DirectiveError>) {
+        self.answer.store(answer_word(answer), Relaxed);
+    }
+
+    /// Takes what came of the directive that the link has given; none as long as the tick has not taken that. The link alone calls this,
+    /// and has one directive under way at most.
+    pub fn take_answer(&self) -> Option<Result<(), DirectiveError>> {
+        let answer = answer_of(self.answer.load(Relaxed))?;
+        self.answer.store(0, Relaxed);
+        Some(answer)
     }
 
     /// The button changed.
@@ -189,16 +206,4 @@ fn write(words: &[AtomicI32; 3], position: Position) {
 
 fn read(words: &[AtomicI32; 3]) -> Position {
     words.each_ref().map(|word| Fixed(word.load(Relaxed)))
-}
-
-fn motion_state(number: u32) -> motion::State {
-    use motion::State::{Braking, Cancelled, Cancelling, Finished, Held, Holding, Idle, Run, Starved};
-    let all = [Idle, Run, Starved, Finished, Braking, Holding, Held, Cancelling, Cancelled];
-    all.into_iter().find(|&state| state as u32 == number).unwrap_or(Idle)
-}
-
-fn machine_state(number: u32) -> safety::State {
-    use safety::State::{Braking, EStop, Fault, Hold, Homing, Idle, Run};
-    let all = [Idle, Homing, Run, Hold, Braking, Fault, EStop];
-    all.into_iter().find(|&state| state as u32 == number).unwrap_or(Fault)
 }

@@ -38,7 +38,7 @@ mod app {
     use shared::machine::image::Image;
     use shared::supply::{Sink, Source};
 
-    use crate::control::{ANSWERS, Answers, DIRECTIVES, Directives, Hands, PIECES, PieceQueue, Tick};
+    use crate::control::{DIRECTIVES, Directives, Hands, PIECES, PieceQueue, Tick};
     use crate::hardware::{self, Cycles, SerialPort, StopInput, TickTimer, Watchdog, pac};
     use crate::link::{Lines, Link, RX_BYTES, TX_BYTES};
     use crate::mailbox::MAILBOX;
@@ -64,7 +64,6 @@ mod app {
         pieces: PieceQueue = Queue::new(),
         horizon: AtomicU32 = AtomicU32::new(0),
         directives: Directives = Queue::new(),
-        answers: Answers = Queue::new(),
         received: Queue<u8, RX_BYTES> = Queue::new(),
         to_send: Queue<u8, TX_BYTES> = Queue::new(),
         image: Image = Image::new(),
@@ -72,7 +71,6 @@ mod app {
     fn init(cx: init::Context) -> (Shared, Local) {
         let (piece_producer, piece_consumer) = cx.local.pieces.split();
         let (directive_producer, directive_consumer) = cx.local.directives.split();
-        let (answer_producer, answer_consumer) = cx.local.answers.split();
         let (received_producer, received_consumer) = cx.local.received.split();
         let (to_send_producer, to_send_consumer) = cx.local.to_send.split();
 
@@ -86,10 +84,9 @@ mod app {
 
         let horizon: &'static AtomicU32 = cx.local.horizon;
         let (sink, source) = (Sink::new(piece_producer, horizon), Source::new(piece_consumer, horizon));
-        let lines =
-            Lines { to_send: to_send_producer, pieces: sink, directives: directive_producer, answers: answer_consumer };
+        let lines = Lines { to_send: to_send_producer, pieces: sink, directives: directive_producer };
         let hands = Hands { inputs, encoders, drives, ring, enables };
-        let tick = Tick::new(&machine, cause, hands, source, directive_consumer, answer_producer);
+        let tick = Tick::new(&machine, cause, hands, source, directive_consumer);
         let link = Link::new(received_consumer, lines, machine, cx.local.image, lamp);
         (Shared {}, Local { timer, watchdog, tick, port, stop, link })
     }
@@ -149,6 +146,6 @@ mod app {
         rtic::pend(pac::Interrupt::USART3);
     }
 
-    // These are named in types of `Local` only through others; RTIC wants to see them used.
-    const _: (usize, usize) = (DIRECTIVES, ANSWERS);
+    // Named in a type of `Local` only through others; RTIC wants to see it used.
+    const _: usize = DIRECTIVES;
 }

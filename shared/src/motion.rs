@@ -93,6 +93,22 @@ impl State {
         })
     }
 
+    /// The state of a number, as `as u8` gives it.
+    pub const fn from_number(number: u8) -> Option<Self> {
+        Some(match number {
+            0 => Self::Idle,
+            1 => Self::Run,
+            2 => Self::Starved,
+            3 => Self::Finished,
+            4 => Self::Braking,
+            5 => Self::Holding,
+            6 => Self::Held,
+            7 => Self::Cancelling,
+            8 => Self::Cancelled,
+            _ => return None,
+        })
+    }
+
     /// Its name, as in the table.
     pub const fn name(self) -> &'static str {
         match self {

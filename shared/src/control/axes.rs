@@ -76,8 +76,10 @@ pub struct Axes<const AXES: usize, const PORTS: usize, const SLOTS: usize> {
     steps: StepAxes<AXES, PORTS, SLOTS>,
     step_state: StepState<AXES>,
     has_steps: bool,
-    /// Which coordinate of a position each axis follows; none where there is no axis.
-    coordinates: [Option<u8>; AXES],
+    /// Which coordinate of a position each axis follows: 0 to 2, or [`NONE`].
+    coordinates: [u8; AXES],
+    /// Which axis follows each coordinate; [`NONE`] where none does.
+    axes: [u8; 3],
     /// The lowest and the highest target of a path, with [`SLACK`].
     travel: [[Fixed; 2]; AXES],
     /// Where each axis shall be now.
@@ -96,6 +98,16 @@ pub struct Commands<const AXES: usize> {
 impl<const AXES: usize> Commands<AXES> {
     /// Nothing.
     pub const ZERO: Self = Self { commands: [0.0; AXES], levels: [0.0; AXES] };
+}
+
+/// The number of no axis and of no coordinate.
+const NONE: u8 = 7;
+
+/// One of eight, without a bound to check; the last is nobody's.
+#[inline(always)]
+fn one_of(values: &[Fixed; 8], number: u8) -> Fixed {
+    // Three bits are below eight.
+    values.get(usize::from(number & 7)).copied().unwrap_or(Fixed(0))
 }
 
 /// What a setpoint may seem to leave the travel by: twice what the check before motion allows, [`crate::extent::SLACK_MM`].
@@ -121,7 +133,8 @@ impl<const AXES: usize, const PORTS: usize, const SLOTS: usize> Axes<AXES, PORTS
         }
         let mut settings = pins.map(|pins| STILL.on_pins(pins.step, pins.direction, SLOTS));
         let mut servos = [None; AXES];
-        let mut coordinates = [None; AXES];
+        let mut coordinates = [NONE; AXES];
+        let mut axes = [NONE; 3];
         let mut travel = [[Fixed(0); 2]; AXES];
         let mut has_steps = false;
         let places = settings.iter_mut().zip(pins).zip(servos.iter_mut().zip(coordinates.iter_mut().zip(&mut travel)));
@@ -129,12 +142,15 @@ impl<const AXES: usize, const PORTS: usize, const SLOTS: usize> Axes<AXES, PORTS
             let [low, high] = axis.travel;
             // Both are within 4 m, and 32 bits hold 8 m.
             *travel = [Fixed(low.0.saturating_sub(SLACK)), Fixed(high.0.saturating_add(SLACK))];
-            *coordinate = Some(match axis.name {
+            *coordinate = match axis.name {
                 AxisName::X => 0,
                 AxisName::Y => 1,
                 AxisName::Z => 2,
                 AxisName::A | AxisName::B | AxisName::C => return Err(AxesError::Name { axis: number }),
-            });
+            };
+            if let Some(place) = axes.get_mut(usize::from(*coordinate)) {
+                *place = number;
+            }
             match axis.drive {
                 Drive::Step(drive) => {
                     has_steps = true;
@@ -155,7 +171,7 @@ impl<const AXES: usize, const PORTS: usize, const SLOTS: usize> Axes<AXES, PORTS
         }
         let steps = StepSettings::activate(&settings).map_err(AxesError::Steps)?;
         let step_state = steps.at_rest([Fixed(0); AXES]);
-        Ok(Self { servos, steps, step_state, has_steps, coordinates, travel, targets: [Fixed(0); AXES] })
+        Ok(Self { servos, steps, step_state, has_steps, coordinates, axes, travel, targets: [Fixed(0); AXES] })
     }
 
     /// Whether there are step axes.
@@ -256,23 +272,17 @@ impl<const AXES: usize, const PORTS: usize, const SLOTS: usize> Axes<AXES, PORTS
 
     /// The coordinates of a position for each axis.
     #[inline(always)]
-    pub fn of_position(&self, position: &Position) -> [Fixed; AXES] {
-        self.coordinates.map(|coordinate| match coordinate {
-            Some(coordinate) => position.get(usize::from(coordinate)).copied().unwrap_or(Fixed(0)),
-            None => Fixed(0),
-        })
+    pub fn of_position(&self, &[x, y, z]: &Position) -> [Fixed; AXES] {
+        let values = [x, y, z, Fixed(0), Fixed(0), Fixed(0), Fixed(0), Fixed(0)];
+        self.coordinates.map(|coordinate| one_of(&values, coordinate))
     }
 
     /// The position that values of the axes make; 0 where there is no axis.
     #[inline(always)]
-    pub fn position(&self, values: &[Fixed; AXES]) -> Position {
-        let mut position = [Fixed(0); 3];
-        for (coordinate, value) in self.coordinates.iter().zip(values) {
-            if let Some(place) = coordinate.and_then(|coordinate| position.get_mut(usize::from(coordinate))) {
-                *place = *value;
-            }
-        }
-        position
+    pub fn position(&self, of_axes: &[Fixed; AXES]) -> Position {
+        let mut values = [Fixed(0); 8];
+        values.iter_mut().zip(of_axes).for_each(|(value, of_axis)| *value = *of_axis);
+        self.axes.map(|axis| one_of(&values, axis))
     }
 
     /// Where the axes are: a servo by its encoder, a step axis where it was told to be.

@@ -19,11 +19,13 @@ mod axes;
 mod directive;
 mod ring;
 mod status;
+mod words;
 
 pub use axes::{Axes, AxesError, Commands, StepPins, step_settings};
 pub use directive::{Directive, DirectiveError, Start};
 pub use ring::{Late, Ring};
 pub use status::{PathEnd, Status};
+pub use words::{answer_of, answer_word};
 
 use crate::executor::{Executor, Pieces};
 use crate::fixed::{Fixed, Position, UNITS_PER_MM};

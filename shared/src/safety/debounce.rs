@@ -7,6 +7,8 @@ use crate::steps::MOST_AXES;
 pub struct Debounce {
     level: u8,
     counts: [u8; MOST_AXES],
+    /// Whether any of the counts is above 0.
+    counting: bool,
 }
 
 impl Debounce {
@@ -14,6 +16,12 @@ impl Debounce {
     #[inline(always)]
     pub fn level(&self) -> u8 {
         self.level
+    }
+
+    /// Whether all levels are inactive and stay so: another tick without an active one would change nothing.
+    #[inline(always)]
+    pub fn rests(&self) -> bool {
+        self.level == 0 && !self.counting
     }
 
     /// One tick: a change counts with the `ticks`-th tick in a row that shows it; 0 and 1 are at once.
@@ -27,10 +35,11 @@ impl Debounce {
     pub fn asymmetric(&mut self, raw: u8, on: u8, off: u8) -> u8 {
         let changed = raw ^ self.level;
         if changed == 0 {
-            self.counts = [0; MOST_AXES];
+            (self.counts, self.counting) = ([0; MOST_AXES], false);
             return self.level;
         }
         let mut bit = 1_u8;
+        self.counting = false;
         for count in &mut self.counts {
             if changed & bit == 0 {
                 *count = 0;
@@ -40,6 +49,7 @@ impl Debounce {
                     *count = 0;
                     self.level ^= bit;
                 }
+                self.counting |= *count != 0;
             }
             bit = bit.wrapping_shl(1);
         }

@@ -180,8 +180,6 @@ pub struct Outputs {
     pub drives: bool,
     /// Whether setpoints may advance. Where they may not, a job or a homing is over.
     pub advance: bool,
-    /// Whether a job in machine coordinates would be started.
-    pub ready: bool,
     /// The axes whose position is known; bit k is axis k.
     pub known: u8,
     /// What is wrong, until it is acknowledged.
@@ -222,16 +220,44 @@ impl Safety {
         (self.state, self.fault, self.known)
     }
 
+    /// Whether no input acts and none did lately, so that nothing is being debounced.
+    #[inline(always)]
+    fn is_quiet(&self, levels: &Levels) -> bool {
+        let acting = u8::from(levels.estop) | levels.low | levels.high | levels.drive_fault;
+        let debounced = self.estop.rests() & self.drive_fault.rests() & self.low.rests() & self.high.rests();
+        acting == 0 && debounced
+    }
+
     /// One tick. The emergency stop comes first, then a drive's fault, a limit switch, and the event.
+    #[inline(always)]
     pub fn step(&mut self, config: &SafetyConfig, levels: Levels, event: Option<Event>) -> Outputs {
         let before = self.state;
+        let mut refused = None;
+        // Nearly every tick of a machine's life.
+        if event.is_some() || !self.is_quiet(&levels) {
+            refused = self.judge(config, levels, event);
+        }
+        let state = self.state;
+        Outputs {
+            state,
+            drives: state.has_drives(),
+            advance: state.advances(),
+            known: self.known,
+            fault: self.fault,
+            refused,
+            resume_from_encoders: state.has_drives() && !before.has_drives(),
+        }
+    }
+
+    /// A tick in which something happens. Returns why the event was refused.
+    #[inline(never)]
+    fn judge(&mut self, config: &SafetyConfig, levels: Levels, event: Option<Event>) -> Option<Refused> {
         let pressed = self.estop.asymmetric(u8::from(levels.estop), 1, config.release) != 0;
         let drives = self.drive_fault.asymmetric(levels.drive_fault & config.axes, 1, config.release);
         let limits = self.limits(config, levels);
 
         // A drive at fault has lost its position in whatever state the machine is.
         self.known &= !drives;
-        let mut refused = None;
         if pressed {
             self.enter(config, State::EStop);
         }
@@ -242,21 +268,18 @@ impl Safety {
             self.trip(config, fault);
         }
         match event {
-            Some(Event::Trip(fault)) => self.trip(config, fault),
-            Some(event) => refused = self.take(config, event, pressed, drives),
-            None => {}
+            Some(Event::Trip(fault)) => {
+                self.trip(config, fault);
+                None
+            }
+            Some(event) => self.take(config, event, pressed, drives),
+            None => None,
         }
-        let state = self.state;
-        Outputs {
-            state,
-            drives: state.has_drives(),
-            advance: state.advances(),
-            ready: self.start_refusal(config, Coordinates::Machine).is_none(),
-            known: self.known,
-            fault: self.fault,
-            refused,
-            resume_from_encoders: state.has_drives() && !before.has_drives(),
-        }
+    }
+
+    /// Whether a job in machine coordinates would be started now.
+    pub fn is_ready(&self, config: &SafetyConfig) -> bool {
+        self.start_refusal(config, Coordinates::Machine).is_none()
     }
 
     /// Debounces the limit switches, and finds the one that trips.

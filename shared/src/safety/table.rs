@@ -120,6 +120,20 @@ impl State {
         TABLE.get(self as usize).and_then(|row| row.get(kind as usize)).copied().unwrap_or(Next::Nothing)
     }
 
+    /// The state of a number, as `as u8` gives it.
+    pub const fn from_number(number: u8) -> Option<Self> {
+        Some(match number {
+            0 => Self::Idle,
+            1 => Self::Homing,
+            2 => Self::Run,
+            3 => Self::Hold,
+            4 => Self::Braking,
+            5 => Self::Fault,
+            6 => Self::EStop,
+            _ => return None,
+        })
+    }
+
     /// Whether the drives may have power.
     #[inline(always)]
     pub const fn has_drives(self) -> bool {

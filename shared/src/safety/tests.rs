@@ -36,9 +36,9 @@ fn a_job_in_machine_coordinates_needs_a_known_position() {
     let mut safety = Safety::after_reset(ResetCause::Ordinary);
     let out = safety.step(&CONFIG, CLEAR, Some(Event::Start(Coordinates::Machine)));
     assert_eq!(out.refused, Some(Refused::PositionUnknown { axis: 0 }));
-    assert!(!out.ready && out.state == State::Idle);
+    assert!(out.state == State::Idle);
     assert_eq!(safety.step(&CONFIG, CLEAR, Some(Event::Start(Coordinates::Relative))).state, State::Run);
-    assert!(homed().step(&CONFIG, CLEAR, None).ready);
+    assert!(homed().is_ready(&CONFIG));
 }
 
 #[test]
