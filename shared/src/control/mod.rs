@@ -356,11 +356,7 @@ impl<const AXES: usize, const PORTS: usize, const SLOTS: usize> Control<AXES, PO
         match &mut self.activity {
             Activity::Rest => self.axes.targets(),
             Activity::Path => {
-                if self.executor.state().is_moving() || self.executor.state() == motion::State::Held {
-                    let setpoint = self.executor.tick(pieces);
-                    self.hash.add(setpoint);
-                    self.ticks = self.ticks.wrapping_add(1);
-                }
+                self.walk(pieces);
                 self.axes.of_position(&sum(self.executor.setpoint(), self.offset))
             }
             Activity::Homing(search, last) => {
@@ -368,6 +364,15 @@ impl<const AXES: usize, const PORTS: usize, const SLOTS: usize> Control<AXES, PO
                 *last = Some(step);
                 self.follow_search(&step)
             }
+        }
+    }
+
+    /// A function of its own: the arithmetic of a curve wants all registers for itself.
+    #[inline(never)]
+    fn walk(&mut self, pieces: &mut impl Pieces<f32>) {
+        if self.executor.state().is_moving() || self.executor.state() == motion::State::Held {
+            self.hash.add(self.executor.tick(pieces));
+            self.ticks = self.ticks.wrapping_add(1);
         }
     }
 
