@@ -11,13 +11,15 @@
 //! | `StepRing`, `SLOTS`, `PINS` | step axes: the ring that hardware plays |
 //! | `Enables`, `off` | power for the drives, which the stop input takes away without a program |
 //! | `StopInput` | the interrupt of the stop |
+//! | `LINE` | the interrupt of the line to the host |
 //! | `SerialPort`, `Lamp`, `Watchdog` | the line to the host; for people; against a tick that does not come |
-//! | `reset_cause` | why the processor started |
+//! | `KEPT_RANGE` | where in the flash the machine is kept |
 //!
 //! `AXES` is how many connectors the board has; each takes a step axis or a servo.
 
 mod blocking;
 mod cycles;
+mod ring;
 
 #[cfg(feature = "nucleo-h743zi2")]
 mod h743;
