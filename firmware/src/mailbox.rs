@@ -62,13 +62,12 @@ pub struct Mailbox {
 
 impl Mailbox {
     const fn new() -> Self {
-        const ZERO: AtomicI32 = AtomicI32::new(0);
         Self {
             uptime: AtomicU32::new(0),
             motion: AtomicU32::new(0),
             ticks: AtomicU32::new(0),
             pieces: AtomicU32::new(0),
-            setpoint: [const { ZERO }; 3],
+            setpoint: [const { AtomicI32::new(0) }; 3],
             hash: [const { AtomicU32::new(0) }; 2],
             residual: AtomicU32::new(0),
             told: [const { AtomicU32::new(0) }; AXES],
@@ -78,8 +77,8 @@ impl Mailbox {
             path: AtomicU32::new(0),
             fault: AtomicU32::new(0),
             known: AtomicU32::new(0),
-            position: [const { ZERO }; 3],
-            actual: [const { ZERO }; 3],
+            position: [const { AtomicI32::new(0) }; 3],
+            actual: [const { AtomicI32::new(0) }; 3],
             button: AtomicBool::new(false),
             pressed: AtomicBool::new(false),
         }
