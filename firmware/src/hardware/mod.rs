@@ -21,9 +21,18 @@ mod blocking;
 mod cycles;
 mod ring;
 
+#[cfg(not(any(feature = "nucleo-h743zi2", feature = "nucleo-f446re")))]
+compile_error!("the firmware is for one board: choose it by a feature, such as `nucleo-h743zi2`");
+#[cfg(all(feature = "nucleo-h743zi2", feature = "nucleo-f446re"))]
+compile_error!("the firmware is for one board: `nucleo-f446re` takes `--no-default-features`");
+
+#[cfg(feature = "nucleo-f446re")]
+mod f446;
 #[cfg(feature = "nucleo-h743zi2")]
 mod h743;
 
+#[cfg(feature = "nucleo-f446re")]
+pub use f446::*;
 #[cfg(feature = "nucleo-h743zi2")]
 pub use h743::*;
 
