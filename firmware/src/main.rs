@@ -172,6 +172,8 @@ mod app {
     /// Reads frames, loads pieces, answers and reports.
     #[task(priority = 2, local = [link])]
     async fn link(cx: link::Context) {
+        // A board that receives by DMA brings here what has come since; at the end it leaves with what there is to say.
+        rtic::pend(hardware::LINE);
         cx.local.link.serve();
         rtic::pend(hardware::LINE);
     }
