@@ -4,8 +4,8 @@ use embedded_storage::nor_flash::NorFlash;
 use sequential_storage::cache::Cache;
 use sequential_storage::map::{MapConfig, MapStorage};
 use shared::control::Axes;
-use shared::machine::Machine;
 use shared::machine::image::{IMAGE_SIZE, Image, decode};
+use shared::machine::{Axis, Drive, Machine};
 
 use crate::hardware::{AXES, Blocking, KEPT_RANGE, PINS, PORTS, SLOTS};
 use crate::restart;
@@ -19,7 +19,16 @@ const BUFFER_SIZE: usize = IMAGE_SIZE + 64;
 /// The machine of an image. Errors: none that this board can drive.
 pub fn machine_of(image: &[u8]) -> Option<Machine> {
     let machine = decode(image).ok()?.activate().ok()?;
-    Axes::<AXES, PORTS, SLOTS>::new(&machine, &PINS).is_ok().then_some(machine)
+    let is_driven = Axes::<AXES, PORTS, SLOTS>::new(&machine, &PINS).is_ok() && machine.axes.iter().all(keeps_up);
+    is_driven.then_some(machine)
+}
+
+/// Whether the slots of this board are short enough for an axis's pulses at its highest velocity.
+fn keeps_up(axis: &Axis) -> bool {
+    let Drive::Step(drive) = axis.drive else { return true };
+    let settings = drive.on_pins((0, 0), (0, 0), SLOTS);
+    let slots = f64::from(settings.pulse) + f64::from(settings.gap);
+    f64::from(axis.velocity) * drive.steps_per_mm * slots <= SLOTS as f64 / f64::from(shared::TICK)
 }
 
 /// The machine to run, whose image is left in `image`: one that was sent before the restart, which is kept first; or the one that is

@@ -6,8 +6,8 @@
 //! | --- | --- | --- | --- |
 //! | `stop_button` | 15 | the button | takes the drives' power and the pulses, in hardware registers, before anything else |
 //! | `tick` | 14 | TIM2, 1024 times a second | inputs, safety, one setpoint, every axis |
-//! | `serial` | 8 | USART3 | moves bytes between the line and two queues |
-//! | `link` | 2 | `serial` and `idle` | reads frames, validates pieces, answers, reports |
+//! | `usart3` or `usart2` | 8 | the line's serial port, which is the board's | moves bytes between the line and two queues |
+//! | `link` | 2 | the line and `idle` | reads frames, validates pieces, answers, reports |
 //! | `idle` | 0 | every interrupt | sleeps; wakes `link` for reports |
 //!
 //! Between them stand single-producer single-consumer queues and the [`mailbox`], so that no task waits for a slower one. Everything
@@ -39,7 +39,7 @@ mod app {
     use shared::supply::{Sink, Source};
 
     use crate::control::{DIRECTIVES, Directives, Hands, PIECES, PieceQueue, Tick};
-    use crate::hardware::{self, Cycles, SerialPort, StopInput, TickTimer, Watchdog, pac};
+    use crate::hardware::{self, Cycles, SerialPort, StopInput, TickTimer, Watchdog};
     use crate::link::{Lines, Link, RX_BYTES, TX_BYTES};
     use crate::mailbox::MAILBOX;
     use crate::{kept, restart};
@@ -55,7 +55,10 @@ mod app {
         timer: TickTimer,
         watchdog: Watchdog,
         tick: Tick,
-        port: SerialPort,
+        #[cfg(feature = "nucleo-h743zi2")]
+        usart3: SerialPort,
+        #[cfg(feature = "nucleo-f446re")]
+        usart2: SerialPort,
         stop: StopInput,
         link: Link,
     }
@@ -88,7 +91,18 @@ mod app {
         let hands = Hands { inputs, encoders, drives, ring, enables };
         let tick = Tick::new(&machine, cause, hands, source, directive_consumer);
         let link = Link::new(received_consumer, lines, machine, cx.local.image, lamp);
-        (Shared {}, Local { timer, watchdog, tick, port, stop, link })
+        let local = Local {
+            timer,
+            watchdog,
+            tick,
+            #[cfg(feature = "nucleo-h743zi2")]
+            usart3: port,
+            #[cfg(feature = "nucleo-f446re")]
+            usart2: port,
+            stop,
+            link,
+        };
+        (Shared {}, local)
     }
 
     /// Sleeps between interrupts, and lets the link report.
@@ -130,10 +144,23 @@ mod app {
         MAILBOX.close(cycles.elapsed());
     }
 
-    /// Bytes from the line into a queue, and from a queue to the line. A quarter of a tick's period passes between two bytes.
-    #[task(binds = USART3, priority = 8, local = [port])]
-    fn serial(cx: serial::Context) {
-        if cx.local.port.exchange() {
+    /// The line of the NUCLEO-H743ZI2, see [`exchange`].
+    #[cfg(feature = "nucleo-h743zi2")]
+    #[task(binds = USART3, priority = 8, local = [usart3])]
+    fn usart3(cx: usart3::Context) {
+        exchange(cx.local.usart3);
+    }
+
+    /// The line of the NUCLEO-F446RE, see [`exchange`].
+    #[cfg(feature = "nucleo-f446re")]
+    #[task(binds = USART2, priority = 8, local = [usart2])]
+    fn usart2(cx: usart2::Context) {
+        exchange(cx.local.usart2);
+    }
+
+    /// Bytes from the line into a queue, and from a queue to the line.
+    fn exchange(port: &mut SerialPort) {
+        if port.exchange() {
             // A frame has ended. An error says that the link is awake already.
             let _ = link::spawn();
         }
@@ -142,8 +169,10 @@ mod app {
     /// Reads frames, loads pieces, answers and reports.
     #[task(priority = 2, local = [link])]
     async fn link(cx: link::Context) {
+        // A board that receives by DMA brings here what has come since; at the end it leaves with what there is to say.
+        rtic::pend(hardware::LINE);
         cx.local.link.serve();
-        rtic::pend(pac::Interrupt::USART3);
+        rtic::pend(hardware::LINE);
     }
 
     // Named in a type of `Local` only through others; RTIC wants to see it used.

@@ -57,6 +57,8 @@ struct Figures {
     flash_bytes: u32,
     ram_bytes: u32,
     instructions: BTreeMap<String, BTreeMap<String, u32>>,
+    /// Of the boards that cannot be emulated: the memory that their images take, in bytes.
+    images: BTreeMap<String, BTreeMap<String, u32>>,
     /// Of a measurement only: functions that the tick reaches and must not.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     forbidden: Vec<String>,
@@ -107,8 +109,18 @@ fn measure() -> Outcome<Figures> {
     let text = output(&mut board)?;
     let mut figures: Figures =
         serde_json::from_str(&text).map_err(|error| Failure::new(format!("the virtual board's figures: {error}")))?;
+    for board in Board::ALL.into_iter().filter(|&board| board != Board::default()) {
+        figures.images.insert(board.feature().to_owned(), sizes(board)?);
+    }
     figures.compiler = compiler()?.name;
     Ok(figures)
+}
+
+/// The memory that a board's image takes.
+fn sizes(board: Board) -> Outcome<BTreeMap<String, u32>> {
+    let image = firmware(board)?;
+    let text = output(board_cargo(&["run", "--release", "--quiet"])?.args(["--", "sizes", "--elf"]).arg(image))?;
+    serde_json::from_str(&text).map_err(|error| Failure::new(format!("the sizes of an image: {error}")))
 }
 
 fn file() -> PathBuf {
@@ -166,6 +178,10 @@ impl Figures {
             "the interrupt's stack {} bytes, flash {} bytes, RAM {} bytes",
             self.stack_bytes, self.flash_bytes, self.ram_bytes
         );
+        for (board, sizes) in &self.images {
+            let sizes: Vec<String> = sizes.iter().map(|(memory, bytes)| format!("{memory} {bytes} bytes")).collect();
+            let _ = writeln!(text, "{board}: {}", sizes.join(", "));
+        }
         let _ = writeln!(
             text,
             "the tick reaches {} functions, {} of them forbidden",
@@ -179,16 +195,19 @@ impl Figures {
     fn toml(&self) -> String {
         let mut text = String::from(
             "# What the firmware costs, written by `cargo xtask budget --accept`. Instructions are exact counts of the image on the virtual\n\
-             # board: per stage in the middle of a ramp, `median` and `most` of the whole interrupt; by kind of piece and order.\n",
+             # board: per stage in the middle of a ramp, `median` and `most` of the whole interrupt; by kind of piece and order. Images are those\n\
+             # of other boards, in bytes.\n",
         );
         let _ = writeln!(text, "compiler = {:?}", self.compiler);
         for (name, bytes) in [("stack", self.stack_bytes), ("flash", self.flash_bytes), ("ram", self.ram_bytes)] {
             let _ = writeln!(text, "{name}_bytes = {bytes}");
         }
-        text.push_str("\n[instructions]\n");
-        for (name, row) in &self.instructions {
-            let row: Vec<String> = row.iter().map(|(stage, count)| format!("{stage:?} = {count}")).collect();
-            let _ = writeln!(text, "{name:?} = {{ {} }}", row.join(", "));
+        for (title, rows) in [("instructions", &self.instructions), ("images", &self.images)] {
+            let _ = writeln!(text, "\n[{title}]");
+            for (name, row) in rows {
+                let row: Vec<String> = row.iter().map(|(figure, count)| format!("{figure:?} = {count}")).collect();
+                let _ = writeln!(text, "{name:?} = {{ {} }}", row.join(", "));
+            }
         }
         text
     }
@@ -239,6 +258,12 @@ impl Figures {
                 let is_whole = matches!(stage.as_str(), "median" | "most" | "start" | "node");
                 let blur = if is_whole { 0 } else { STAGE_BLUR };
                 compare(format!("{name}, {stage}"), before.and_then(|row| row.get(stage)).copied(), now, blur);
+            }
+        }
+        for (board, row) in &self.images {
+            for (memory, &now) in row {
+                let before = accepted.images.get(board).and_then(|row| row.get(memory)).copied();
+                compare(format!("{board}, {memory}"), before, now, 0);
             }
         }
         for (name, before, now) in [

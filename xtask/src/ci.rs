@@ -5,8 +5,9 @@ use std::process::Command;
 
 use clap::Args;
 
+use crate::build::Board;
 use crate::test::{Tally, all};
-use crate::tools::{Outcome, TARGET, board_cargo, cargo, root, run, target_dir};
+use crate::tools::{Outcome, board_cargo, cargo, root, run, target_dir};
 
 /// The version of cargo-deny that is installed where there is none.
 const CARGO_DENY: &str = "0.20.2";
@@ -26,30 +27,22 @@ impl Ci {
             let packages = ["--workspace", "--exclude", "firmware", "--all-targets", "--quiet", "--", "-D", "warnings"];
             run(cargo(&["clippy"]).args(packages))
         });
-        tally.step("lints of the firmware", || {
-            let firmware = ["--package", "firmware", "--profile", "firmware", "--target", TARGET, "--quiet"];
-            run(cargo(&["clippy"]).args(firmware).args(["--", "-D", "warnings"]))?;
-            run(cargo(&["clippy"]).args(firmware).args(["--features", "tandem", "--", "-D", "warnings"]))
-        });
+        for board in Board::ALL {
+            tally.step(&format!("lints of the firmware for {}", board.feature()), || {
+                run(board.cargo(&["clippy"]).args(["--profile", "firmware", "--", "-D", "warnings"]))
+            });
+        }
         tally.step("lints of the virtual board", || {
             run(board_cargo(&["clippy", "--release", "--all-targets", "--quiet"])?.args(["--", "-D", "warnings"]))
         });
         tally.step("docs", || {
             run(strict(&mut cargo(&["doc", "--no-deps", "--quiet", "--workspace", "--exclude", "firmware"])))
         });
-        tally.step("docs of the firmware", || {
-            let firmware = [
-                "doc",
-                "--no-deps",
-                "--quiet",
-                "--package",
-                "firmware",
-                "--document-private-items",
-                "--target",
-                TARGET,
-            ];
-            run(strict(&mut cargo(&firmware)))
-        });
+        for board in Board::ALL {
+            tally.step(&format!("docs of the firmware for {}", board.feature()), || {
+                run(strict(board.cargo(&["doc"]).args(["--no-deps", "--document-private-items"])))
+            });
+        }
         tally.step("docs of the virtual board", || {
             run(strict(&mut board_cargo(&["doc", "--no-deps", "--quiet", "--release"])?))
         });

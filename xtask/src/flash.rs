@@ -20,6 +20,7 @@ pub struct Flash {
 fn chip(board: Board) -> &'static str {
     match board {
         Board::NucleoH743zi2 => "STM32H743ZITx",
+        Board::NucleoF446re => "STM32F446RETx",
     }
 }
 

@@ -90,7 +90,9 @@ pub fn all(tally: &mut Tally, install: bool) -> Outcome {
     tally.step("shared without a standard library, for the target", || {
         run(&mut cargo(&["build", "--quiet", "--package", "shared", "--target", TARGET]))
     });
-    tally.step("the firmware", || Board::ALL.iter().try_for_each(|&board| firmware(board).map(|_| ())));
+    for board in Board::ALL {
+        tally.step(&format!("the firmware for {}", board.feature()), || firmware(board).map(|_| ()));
+    }
     tally.tests("tests on the virtual board", &mut board_cargo(&["test", "--release", "--quiet"])?);
     tally.step("budgets", budget::check);
     Ok(())

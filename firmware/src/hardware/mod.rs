@@ -11,17 +11,28 @@
 //! | `StepRing`, `SLOTS`, `PINS` | step axes: the ring that hardware plays |
 //! | `Enables`, `off` | power for the drives, which the stop input takes away without a program |
 //! | `StopInput` | the interrupt of the stop |
+//! | `LINE` | the interrupt of the line to the host |
 //! | `SerialPort`, `Lamp`, `Watchdog` | the line to the host; for people; against a tick that does not come |
-//! | `reset_cause` | why the processor started |
+//! | `KEPT_RANGE` | where in the flash the machine is kept |
 //!
 //! `AXES` is how many connectors the board has; each takes a step axis or a servo.
 
 mod blocking;
 mod cycles;
+mod ring;
 
+#[cfg(not(any(feature = "nucleo-h743zi2", feature = "nucleo-f446re")))]
+compile_error!("the firmware is for one board: choose it by a feature, such as `nucleo-h743zi2`");
+#[cfg(all(feature = "nucleo-h743zi2", feature = "nucleo-f446re"))]
+compile_error!("the firmware is for one board: `nucleo-f446re` takes `--no-default-features`");
+
+#[cfg(feature = "nucleo-f446re")]
+mod f446;
 #[cfg(feature = "nucleo-h743zi2")]
 mod h743;
 
+#[cfg(feature = "nucleo-f446re")]
+pub use f446::*;
 #[cfg(feature = "nucleo-h743zi2")]
 pub use h743::*;
 

@@ -5,6 +5,7 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use object::{Object, ObjectSection, ObjectSymbol, SymbolKind};
+use serde::Serialize;
 
 use crate::Error;
 
@@ -72,7 +73,7 @@ struct Section {
 }
 
 /// Memory that an image takes, in bytes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct Sizes {
     /// Flash: vectors, code, constants, and the start values of variables.
     pub flash: u32,

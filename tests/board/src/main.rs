@@ -27,6 +27,7 @@ struct Cli {
 enum Verb {
     Run(Run),
     Budget(Budget),
+    Sizes(Sizes),
 }
 
 /// Send a job to the image over its serial link and run it to its end
@@ -62,6 +63,14 @@ struct Budget {
     steps: String,
 }
 
+/// Measure the memory that an image takes, of any board
+#[derive(Args)]
+struct Sizes {
+    /// The image
+    #[arg(long, value_name = "ELF")]
+    elf: PathBuf,
+}
+
 /// The result of `run`.
 #[derive(Serialize)]
 struct RunResult {
@@ -86,6 +95,7 @@ fn main() -> ExitCode {
     let outcome = match Cli::parse().verb {
         Verb::Run(run) => run.run(),
         Verb::Budget(budget) => budget.run(),
+        Verb::Sizes(sizes) => sizes.run(),
     };
     match outcome {
         Ok(()) => ExitCode::SUCCESS,
@@ -145,6 +155,12 @@ impl Budget {
         let mut budget = measure(&image, &mounting(&self.servos)?, progress)?;
         budget.instructions.extend(measure_steps(&image, &mounting(&self.steps)?, progress)?);
         print_json(&budget)
+    }
+}
+
+impl Sizes {
+    fn run(self) -> Result<(), Error> {
+        print_json(&Image::read(&self.elf)?.sizes())
     }
 }
 

@@ -37,6 +37,9 @@ use super::Cycles;
 /// Bits per second of the line.
 const BAUD: u32 = 921_600;
 
+/// The line's interrupt.
+pub const LINE: pac::Interrupt = pac::Interrupt::USART3;
+
 /// Where a machine's settings are kept in [`Early::flash`]: the last two sectors.
 pub const KEPT_RANGE: core::ops::Range<u32> = 0xc_0000..0x10_0000;
 

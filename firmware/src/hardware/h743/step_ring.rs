@@ -2,7 +2,7 @@
 //!
 //! TIM8's update, once a slot, asks DMA1 stream 0 (DMAMUX1 request 51) for one word from the ring to port D's set/reset register. The
 //! ring stands in SRAM1: DMA1 does not reach the DTCM, where everything else is, RM0433 rev 9 table 3. The core's data cache stays off,
-//! so that what the tick writes is in memory when the barrier in `filled` is past; a firmware that switches it on
+//! so that what the tick writes is in memory when the barrier in `Phase::fill` is past; a firmware that switches it on
 //! has to make this region non-cacheable in the MPU.
 //!
 //! TIM2 and TIM8 run from the same clock, and a tick is [`SLOTS`] slots exactly: once they have been started together, the phase between
@@ -11,9 +11,6 @@
 //!
 //! Where the tick does not come any more, the hardware would play the ring again and again: the watchdog ends that.
 
-use core::cell::UnsafeCell;
-use core::mem::MaybeUninit;
-
 use shared::control::{Late, Ring};
 use shared::steps::Half;
 use stm32h7xx_hal::pac;
@@ -21,6 +18,7 @@ use stm32h7xx_hal::rcc::{ResetEnable, rec};
 
 use super::pins::PORTS;
 use super::timer::PERIOD;
+use crate::hardware::ring::{Phase, RingMemory};
 
 /// Slots in a tick: 0.52 us each.
 pub const SLOTS: usize = 1_875;
@@ -31,23 +29,11 @@ const SLOT: u32 = PERIOD / SLOTS as u32;
 // Or ring and tick would drift.
 const _: () = assert!(SLOT * SLOTS as u32 == PERIOD);
 
-/// Words of both halves.
-const WORDS: usize = 2 * SLOTS;
-
-/// How far into a half the tick may find the hardware: with the other half of the time it fills what comes next.
-const LATEST: usize = SLOTS / 2;
-
 /// DMAMUX1's number of TIM8's update request, RM0433 rev 9 table 121.
 const TIM8_UPDATE: u32 = 51;
 
-#[repr(transparent)]
-struct Memory(UnsafeCell<MaybeUninit<[[u32; SLOTS]; 2]>>);
-
-// SAFETY: the only `StepRing` has the only access, and there is one because it owns TIM8.
-unsafe impl Sync for Memory {}
-
 #[unsafe(link_section = ".sram1.ring")]
-static MEMORY: Memory = Memory(UnsafeCell::new(MaybeUninit::uninit()));
+static MEMORY: RingMemory<SLOTS> = RingMemory::new();
 
 /// See the module.
 pub struct StepRing {
@@ -55,8 +41,7 @@ pub struct StepRing {
     dma: pac::DMA1,
     mux: pac::DMAMUX1,
     played: bool,
-    /// The half that was filled last.
-    filled: Half,
+    phase: Phase<SLOTS>,
 }
 
 impl StepRing {
@@ -70,7 +55,7 @@ impl StepRing {
         let _ = dma_rec.enable().reset();
         // SAFETY: the clock of SRAM1, which no other code switches; the HAL has given out the rest of the register by now.
         unsafe { (*pac::RCC::ptr()).ahb2enr.modify(|_, w| w.sram1en().set_bit()) };
-        Self { timer, dma, mux, played: false, filled: Half::Second }
+        Self { timer, dma, mux, played: false, phase: Phase::new() }
     }
 
     /// Stops the slots, from wherever: one store, after which no request comes.
@@ -88,18 +73,16 @@ impl StepRing {
         if (0..1_000).all(|_| stream.cr.read().en().bit_is_set()) {
             return false;
         }
-        let memory = MEMORY.0.get();
-        // SAFETY: nothing plays the ring, and `&mut self` is the only way to it; zeros are words.
-        unsafe { memory.write(MaybeUninit::zeroed()) };
-        cortex_m::asm::dsb();
+        // SAFETY: nothing plays the ring, and `&mut self` is the only way to it.
+        let memory = unsafe { MEMORY.clear() };
         // SAFETY: the values are those of RM0433 rev 9 sections 15.5 and 17.6: words from memory that is the ring's own for ever, to a
         // register whose every value is a valid one; all flags of stream 0 are cleared.
         unsafe {
             self.dma.lifcr.write(|w| w.bits(0x3d));
             self.mux.ccr[0].write(|w| w.bits(TIM8_UPDATE));
-            stream.ndtr.write(|w| w.bits(WORDS as u32));
+            stream.ndtr.write(|w| w.bits(RingMemory::<SLOTS>::WORDS));
             stream.par.write(|w| w.bits((*pac::GPIOD::ptr()).bsrr.as_ptr() as u32));
-            stream.m0ar.write(|w| w.bits(memory as u32));
+            stream.m0ar.write(|w| w.bits(memory));
             stream.fcr.write(|w| w.bits(0));
             // Very high priority, words on both sides, memory increments, circular, memory to peripheral.
             stream.cr.write(|w| w.bits(3 << 16 | 2 << 13 | 2 << 11 | 1 << 10 | 1 << 8 | 1 << 6));
@@ -127,7 +110,7 @@ impl Ring<PORTS, SLOTS> for StepRing {
         }
         self.timer.arr.write(|w| w.arr().bits((SLOT - 1) as u16));
         self.timer.dier.write(|w| w.ude().set_bit());
-        self.filled = Half::Second;
+        self.phase = Phase::new();
         cortex_m::interrupt::free(|_| {
             // SAFETY: the tick's timer is stopped and started within a tick or before the first one, with all interrupts off: whoever
             // owns it sees a period that began here.
@@ -147,29 +130,20 @@ impl Ring<PORTS, SLOTS> for StepRing {
         Self::off();
     }
 
-    /// An error where the half that is not played is not the one after the last, or where too much of the other one is past.
     #[inline(always)]
     fn next_half(&self) -> Result<Half, Late> {
-        let played = WORDS.saturating_sub(self.dma.st[0].ndtr.read().bits() as usize);
-        let (half, into) = if played < SLOTS { (Half::Second, played) } else { (Half::First, played - SLOTS) };
-        if half == self.filled || into > LATEST { Err(Late) } else { Ok(half) }
+        self.phase.next(self.dma.st[0].ndtr.read().bits())
     }
 
     #[inline(always)]
     fn words(&mut self, half: Half) -> [&mut [u32; SLOTS]; PORTS] {
-        // SAFETY: `play` has initialized the memory; `&mut self` is the only way to it; the DMA only reads, and in this tick only
-        // the other half.
-        let [first, second] = unsafe { (*MEMORY.0.get()).assume_init_mut() };
-        [match half {
-            Half::First => first,
-            Half::Second => second,
-        }]
+        // SAFETY: `play` has initialized the memory; `&mut self` is the only way to it, since the only `StepRing` owns TIM8; the DMA
+        // only reads, and in this tick only the other half.
+        [unsafe { &mut *MEMORY.half(half) }]
     }
 
-    /// Waits until the words are in memory.
     #[inline(always)]
     fn filled(&mut self, half: Half) {
-        self.filled = half;
-        cortex_m::asm::dsb();
+        self.phase.fill(half);
     }
 }
