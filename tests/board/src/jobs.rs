@@ -39,14 +39,7 @@ pub const ORDERS: [(Order, &str); 4] =
 /// Two pieces of about 20 mm at 50 mm/s, half a second each, with ramps at both ends, so that the path has a node; the weight is in
 /// the middle, so that no term of the feed law vanishes.
 pub fn job(kind: Kind, order: Order) -> (Header<f32>, Vec<Piece<f32>>) {
-    let header = Header {
-        weight: 0.5,
-        order,
-        closed: false,
-        tolerance: 1e-3,
-        rest: false,
-        pace: PaceLimits::USUAL,
-    };
+    let header = Header { weight: 0.5, order, closed: false, tolerance: 1e-3, rest: false, pace: PaceLimits::USUAL };
     let shape = match kind {
         Kind::Ph => Shape::Ph {
             preimage: [Complex::new(4.2, 0.3), Complex::new(-0.4, 1.1), Complex::new(0.2, -0.3)],
@@ -57,16 +50,8 @@ pub fn job(kind: Kind, order: Order) -> (Header<f32>, Vec<Piece<f32>>) {
     };
     let ramp = Some(Ramp { length: 0.25, factor: 0.25 });
     let origin = round_point(Complex::new(30.0, 20.0));
-    let first = Piece {
-        origin,
-        shape,
-        interval: [0.0, 1.0],
-        feed: 50.0,
-        start: ramp,
-        end: ramp,
-        further: None,
-        last: None,
-    };
+    let first =
+        Piece { origin, shape, interval: [0.0, 1.0], feed: 50.0, start: ramp, end: ramp, further: None, last: None };
     twice(header, first)
 }
 

@@ -10,6 +10,8 @@
 //! | [`pins`] | step drives at the pins, slot by slot |
 //! | [`probe`] | counts instructions of each tick, reads its setpoint in RAM, measures its stack |
 //! | [`run`](mod@run) | one image, one conversation, until it ends |
+//! | [`socket`] | a TCP listener as the far end of the line |
+//! | [`serve`](mod@serve) | the board behind that listener, in real time |
 //! | [`stages`] | which source file each executed instruction came from |
 //! | [`reach`] | what the tick can call, from the machine code |
 //! | [`jobs`] | small jobs of one kind of piece each, for budgets |
@@ -28,6 +30,8 @@ pub mod pins;
 pub mod probe;
 pub mod reach;
 pub mod run;
+pub mod serve;
+pub mod socket;
 pub mod stages;
 
 /// What went wrong with a run, as one sentence.

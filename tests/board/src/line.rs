@@ -12,7 +12,7 @@ use shared::link::{Decoder, Event, Received, Report, Sender, SenderError, Teleme
 use shared::piece::{Header, Piece};
 
 /// The controller has its receiver on by then; what comes before is lost, as on a bench.
-const POWER_UP_US: u64 = 5_000;
+pub(crate) const POWER_UP_US: u64 = 5_000;
 
 /// The session of a conversation. The board starts anew each time, so that it may be the same.
 pub const SESSION: u32 = 0x0b0a_4d01;

@@ -1,6 +1,7 @@
 //! One image, one conversation, until it ends.
 
-use rigless::emulator::{Start, run as emulate};
+use rigless::chip::uart::Peer;
+use rigless::emulator::{Driver, Start, run as emulate};
 use rigless::image::Image as Placed;
 use rigless::machine::stm32h743_bench::Stm32h743Bench;
 use rigless::session::Session;
@@ -41,18 +42,30 @@ pub fn run(
     seconds: f64,
     prepare: impl FnOnce(&mut Probe),
 ) -> Result<Seen, Error> {
-    let failed = |error: &dyn std::fmt::Display| Error::new(format!("the virtual board: {error}"));
-    let mut bench = Stm32h743Bench::new().map_err(|error| failed(&error))?;
-    let nth = usart::INSTANCES.iter().position(|&name| name == PORT);
-    let nth = nth.ok_or_else(|| Error::new(format!("the virtual board has no {PORT}")))?;
-    bench.mcu.usart[nth].attach(Line::new(talker.clone()));
-
-    let mut session = Session::new(Box::new(bench), 0, VirtualNanos(0)).map_err(|error| failed(&error))?;
+    let mut session = board(Line::new(talker.clone()))?;
     let mut probe = Probe::new(image, talker, seconds)?;
     prepare(&mut probe);
     probe.watch(&mut session);
+    Ok(execute(image, session, probe)?.seen)
+}
+
+/// A board with `peer` at the far end of its line, before its first instruction.
+pub(crate) fn board(peer: impl Peer) -> Result<Session<Stm32h743Bench>, Error> {
+    let mut bench = Stm32h743Bench::new().map_err(|error| failed(&error))?;
+    let nth = usart::INSTANCES.iter().position(|&name| name == PORT);
+    let nth = nth.ok_or_else(|| Error::new(format!("the virtual board has no {PORT}")))?;
+    bench.mcu.usart[nth].attach(peer);
+    Session::new(Box::new(bench), 0, VirtualNanos(0)).map_err(|error| failed(&error))
+}
+
+/// Runs `image` until `driver` ends the run, and gives the driver back. Errors: what the firmware did that it must not.
+pub(crate) fn execute<R: Driver<Stm32h743Bench> + 'static>(
+    image: &Image,
+    session: Session<Stm32h743Bench>,
+    driver: R,
+) -> Result<R, Error> {
     let images = [Placed::read(image.path(), None).map_err(|error| failed(&error))?];
-    let mut finished = emulate(session, &Start::new(&images), probe).map_err(|error| failed(&error))?;
+    let mut finished = emulate(session, &Start::new(&images), driver).map_err(|error| failed(&error))?;
     if let Some(error) = finished.session.take_error() {
         return Err(failed(&error));
     }
@@ -62,7 +75,11 @@ pub fn run(
     if let Some(reset) = finished.session.resets().first() {
         return Err(Error::new(format!("the controller was reset at {} ns by {:?}", reset.at.0, reset.cause)));
     }
-    Ok(finished.driver.seen)
+    Ok(finished.driver)
+}
+
+fn failed(error: &dyn std::fmt::Display) -> Error {
+    Error::new(format!("the virtual board: {error}"))
 }
 
 /// Sends a job to `image` and waits for its end. `seconds` is how long it should take.

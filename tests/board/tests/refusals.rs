@@ -182,7 +182,8 @@ fn faulty_frames_are_refused_and_forgotten() {
 #[test]
 fn a_start_without_a_job_and_another_version_are_refused() {
     let image = image();
-    let lines = vec![hello(), frame(1, &Command::Run), frame(0, &Command::Hello { version: VERSION + 1, session: SESSION })];
+    let lines =
+        vec![hello(), frame(1, &Command::Run), frame(0, &Command::Hello { version: VERSION + 1, session: SESSION })];
     let (reports, seen) = say(&image, lines);
     assert_eq!(refusals(&reports), [Refusal::NoJob, Refusal::Version { version: VERSION }]);
     assert!(!seen.moved);
