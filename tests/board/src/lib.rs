@@ -7,7 +7,7 @@
 //! | --- | --- |
 //! | [`image`] | the linked image: symbols, code, the interrupt's first instruction and its ends, every call |
 //! | [`line`](mod@line) | the far end of the serial line: whoever speaks to the controller |
-//! | [`pins`] | step drives at the pins, slot by slot |
+//! | [`machine`] | what hangs on the pins: step drivers, servo axes with their encoders, switches |
 //! | [`probe`] | counts instructions of each tick, reads its setpoint in RAM, measures its stack |
 //! | [`run`](mod@run) | one image, one conversation, until it ends |
 //! | [`socket`] | a TCP listener as the far end of the line |
@@ -26,7 +26,7 @@ pub mod budget;
 pub mod image;
 pub mod jobs;
 pub mod line;
-pub mod pins;
+pub mod machine;
 pub mod probe;
 pub mod reach;
 pub mod run;

@@ -3,18 +3,18 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
-use rigless::device::Level;
-use rigless::emulator::{AccessKind, Driver, Hit, Host, Settled, Stop, Watch};
+use rigless::emulator::{Driver, Hit, Host, Settled, Stop, Watch};
 use rigless::machine::stm32h743_bench::Stm32h743Bench;
 use rigless::session::Session;
 use rigless::soc::Width;
-use rigless::soc::stm32h743::peripherals::gpio::Pin;
 use rigless::time::VirtualNanos;
 
 use crate::Error;
 use crate::image::{Image, Instruction, MAILBOX};
 use crate::line::{Shared, Talker, lock};
-use crate::pins::Pins;
+use crate::machine::Machine;
+use crate::machine::step_drivers::StepDrivers;
+use crate::machine::wiring::Fault;
 
 /// How often the run is looked at from outside, in virtual nanoseconds.
 const LOOK: u64 = 1_000_000;
@@ -27,16 +27,6 @@ const PAINT_EVERY: u32 = 128;
 
 /// How many instants of the handler's entry are kept.
 const KEPT_ENTRIES: usize = 4_096;
-
-/// The first control register of TIM8, whose update plays a word; RM0433 rev 9 section 2.3.
-const SLOT_TIMER: u64 = 0x4001_0400;
-
-/// The set/reset register of port E, and the word that switches the drives off there.
-const ENABLE_PORT: u64 = 0x5802_1018;
-const DISABLE: u64 = 1 << 18;
-
-/// The stop input: number of its port, and bit.
-const STOP: (usize, u8) = (2, 13);
 
 const PAINT: u64 = 0xa5a5_5a5a;
 
@@ -53,6 +43,8 @@ pub struct Tick {
     pub instructions: u32,
     /// Pieces of the job that were entered so far.
     pub pieces: u32,
+    /// What x and y were told: a servo's command in mm/s as the bits of an f32, or a position in steps.
+    pub outputs: [u32; 2],
 }
 
 /// Everything that was seen.
@@ -62,6 +54,8 @@ pub struct Seen {
     pub ticks: Vec<Tick>,
     /// Every interrupt since the start, the job's or not.
     pub interrupts: u32,
+    /// How many of them came before the job's first tick; the last of these took the job's start.
+    pub idle: u32,
     /// The most instructions of any of them.
     pub worst: u32,
     /// The most stack that any of them used, without [`EXCEPTION_FRAME`].
@@ -74,12 +68,6 @@ pub struct Seen {
     pub counted_ticks: u32,
     /// Instructions of the interrupts before the first job's first tick.
     pub resting: Vec<u32>,
-    /// What the step drives saw, where they were looked at.
-    pub pins: Pins,
-    /// When the stop input was pressed, in ns.
-    pub pressed: Option<u64>,
-    /// When the drives' enable output was last switched off by the program, in ns.
-    pub disabled: Option<u64>,
     /// Any setpoint, at any time, that was not at rest at the origin.
     pub moved: bool,
 }
@@ -90,6 +78,7 @@ struct Mail {
     ticks: u32,
     pieces: u32,
     setpoint: [i32; 3],
+    outputs: [u32; 2],
 }
 
 /// The driver of a run.
@@ -109,12 +98,12 @@ pub struct Probe {
     /// What ran since, of what is counted.
     ran: Vec<u32>,
     last_ticks: u32,
-    /// Whether the pins are looked at, slot by slot.
-    looks: bool,
-    /// When the stop input is pressed, in ns after the job's first tick.
-    press_after: Option<u64>,
-    /// When it is pressed, in ns.
-    press_at: Option<u64>,
+    /// What happens so many ns after the job's first tick.
+    after: Vec<(u64, Fault)>,
+    /// When the run ends, in ns after the job's first tick.
+    end_after: Option<u64>,
+    /// What hangs on the board's pins.
+    pub machine: Machine,
     /// What was seen.
     pub seen: Seen,
 }
@@ -137,9 +126,9 @@ impl Probe {
             stack_pointer: None,
             ran: Vec::new(),
             last_ticks: 0,
-            looks: false,
-            press_after: None,
-            press_at: None,
+            after: Vec::new(),
+            end_after: None,
+            machine: Machine::default(),
             seen: Seen::default(),
         })
     }
@@ -150,14 +139,20 @@ impl Probe {
         self.count_range = range;
     }
 
-    /// Looks at the pins of step drives in every slot. The run is slow then.
+    /// Looks at the pins of step drivers in every slot. The run is slow then.
     pub fn look_at_pins(&mut self) {
-        self.looks = true;
+        self.machine.step_drivers = Some(StepDrivers::default());
     }
 
-    /// Presses the stop input so many nanoseconds after the job's first tick, and holds it.
-    pub fn press_stop_after(&mut self, nanoseconds: u64) {
-        self.press_after = Some(nanoseconds);
+    /// Lets `fault` begin so many nanoseconds after the job's first tick, and holds it. [`Machine::switches`] takes instants since
+    /// power-up.
+    pub fn inject_after(&mut self, nanoseconds: u64, fault: Fault) {
+        self.after.push((nanoseconds, fault));
+    }
+
+    /// Ends the run so many nanoseconds after the job's first tick.
+    pub fn end_after(&mut self, nanoseconds: u64) {
+        self.end_after = Some(nanoseconds);
     }
 
     /// Asks the session to stop where this probe wants to look, and to come back in time.
@@ -197,7 +192,11 @@ impl Probe {
         self.seen.moved |= mail.setpoint != [0; 3];
         // A new job starts to count from 1 again; between jobs the count stands.
         if mail.ticks != self.last_ticks && mail.ticks > 0 {
-            let tick = Tick { setpoint: mail.setpoint, instructions, pieces: mail.pieces };
+            let Mail { setpoint, pieces, outputs, .. } = mail;
+            let tick = Tick { setpoint, instructions, pieces, outputs };
+            if self.seen.ticks.is_empty() {
+                self.seen.idle = self.seen.interrupts - 1;
+            }
             if self.count_range.contains(&(self.seen.ticks.len() as u32)) {
                 self.seen.counted_ticks += 1;
                 for address in &self.ran {
@@ -239,8 +238,13 @@ impl Probe {
 
     fn read_mail(&self, host: &mut dyn Host) -> Option<Mail> {
         let mut word = |index: u64| host.read(self.mailbox + 4 * index, Width::W32).ok().map(|word| word as u32);
-        // uptime, state, ticks, pieces, setpoint, ..
-        Some(Mail { ticks: word(2)?, pieces: word(3)?, setpoint: [word(4)? as i32, word(5)? as i32, word(6)? as i32] })
+        // uptime, state, ticks, pieces, setpoint, hash, residual, outputs, ..
+        Some(Mail {
+            ticks: word(2)?,
+            pieces: word(3)?,
+            setpoint: [word(4)? as i32, word(5)? as i32, word(6)? as i32],
+            outputs: [word(10)?, word(11)?],
+        })
     }
 }
 
@@ -249,41 +253,30 @@ impl Driver<Stm32h743Bench> for Probe {
         match settled {
             Settled::Hit(hit) => {
                 self.hit(host, hit.address as u32, hit);
-                if let Some(after) = self.press_after
-                    && !self.seen.ticks.is_empty()
-                {
-                    self.press_after = None;
-                    self.press_at = Some(hit.at.0 + after);
+                if !self.seen.ticks.is_empty() {
+                    for (after, fault) in self.after.drain(..) {
+                        self.machine.switches.inject(hit.at.0 + after, fault);
+                    }
+                    if let Some(after) = self.end_after.take() {
+                        self.deadline = self.deadline.min(VirtualNanos(hit.at.0 + after));
+                    }
                 }
             }
-            Settled::Access { access, .. } if access.kind == AccessKind::Write => {
-                if access.address == SLOT_TIMER && access.value & 1 != 0 && self.looks {
-                    let first = self.seen.pins.start(access.virtual_time);
-                    session.run_until(first);
-                }
-                if access.address == ENABLE_PORT && access.value == DISABLE {
-                    self.seen.disabled = Some(access.virtual_time.0);
-                }
-            }
-            _ => {}
+            Settled::Access { access, value } => self.machine.see(&access, value),
+            _ => return,
+        }
+        if let Some(next) = self.machine.next()
+            && next < session.until().0
+        {
+            session.run_until(VirtualNanos(next));
         }
     }
 
     fn on_stop(&mut self, session: &mut Session<Stm32h743Bench>, stop: Stop, _: &mut dyn Host) -> Option<VirtualNanos> {
-        if self.press_at.is_some_and(|at| stop.at.0 >= at) {
-            self.press_at = None;
-            self.seen.pressed = Some(stop.at.0);
-            session.board_mut().mcu.drive_port(stop.at, STOP.0, |gpio, registers, context| {
-                if let Some(pin) = Pin::new(STOP.1) {
-                    gpio.drive(pin, Some(Level::High), registers, context);
-                }
-            });
-        }
-        let look = if self.looks { self.seen.pins.look(session.board_mut(), stop.at) } else { None };
+        self.machine.act(session.board_mut(), stop.at);
         let is_over = stop.at >= self.deadline || lock(&*self.talker).is_done();
-        let next = [look, self.press_at.map(VirtualNanos)].into_iter().flatten().min();
-        let next = next.map_or(stop.at.0 + LOOK, |next| next.0.min(stop.at.0 + LOOK));
-        (!is_over).then_some(VirtualNanos(next))
+        let look = stop.at.0 + LOOK;
+        (!is_over).then(|| VirtualNanos(self.machine.next().map_or(look, |next| next.min(look))))
     }
 }
 

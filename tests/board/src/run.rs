@@ -12,6 +12,8 @@ use shared::piece::{Header, Piece};
 use crate::Error;
 use crate::image::Image;
 use crate::line::{JobTalker, Line, Shared, Talker, lock, share};
+use crate::machine::Machine;
+use crate::machine::switches::Switches;
 use crate::probe::{Probe, Seen, Tick};
 
 /// The port that the firmware's link uses: the ST-Link's.
@@ -21,10 +23,11 @@ const PORT: &str = "USART3";
 const PATIENCE_S: f64 = 30.0;
 
 /// A job's run.
-#[derive(Clone, Debug)]
 pub struct JobRun {
     /// What was seen.
     pub seen: Seen,
+    /// The machine as the run left it.
+    pub machine: Machine,
     /// What the controller reported at the end: ticks, residual time in s, hash of the setpoints.
     pub finished: (u32, f32, u64),
     /// Commands that had to be sent again.
@@ -41,12 +44,13 @@ pub fn run(
     talker: Shared<dyn Talker>,
     seconds: f64,
     prepare: impl FnOnce(&mut Probe),
-) -> Result<Seen, Error> {
+) -> Result<(Seen, Machine), Error> {
     let mut session = board(Line::new(talker.clone()))?;
     let mut probe = Probe::new(image, talker, seconds)?;
     prepare(&mut probe);
     probe.watch(&mut session);
-    Ok(execute(image, session, probe)?.seen)
+    let Probe { seen, machine, .. } = execute(image, session, probe)?;
+    Ok((seen, machine))
 }
 
 /// A board with `peer` at the far end of its line, before its first instruction.
@@ -55,6 +59,7 @@ pub(crate) fn board(peer: impl Peer) -> Result<Session<Stm32h743Bench>, Error> {
     let nth = usart::INSTANCES.iter().position(|&name| name == PORT);
     let nth = nth.ok_or_else(|| Error::new(format!("the virtual board has no {PORT}")))?;
     bench.mcu.usart[nth].attach(peer);
+    Switches::rest(&mut bench);
     Session::new(Box::new(bench), 0, VirtualNanos(0)).map_err(|error| failed(&error))
 }
 
@@ -91,7 +96,7 @@ pub fn run_job(
     prepare: impl FnOnce(&mut Probe),
 ) -> Result<JobRun, Error> {
     let talker = share(JobTalker::new(header, pieces));
-    let seen = run(image, talker.clone(), seconds + PATIENCE_S, prepare)?;
+    let (seen, machine) = run(image, talker.clone(), seconds + PATIENCE_S, prepare)?;
     let talker = lock(&talker);
     if let Some(error) = talker.error() {
         return Err(Error::new(error.to_string()));
@@ -100,7 +105,7 @@ pub fn run_job(
         return Err(Error::new(format!("the job did not end within {:.0} s of virtual time", seconds + PATIENCE_S)));
     };
     let stack = talker.telemetry.map_or(0, |telemetry| telemetry.stack);
-    Ok(JobRun { seen, finished, resent: talker.resent(), stack })
+    Ok(JobRun { seen, machine, finished, resent: talker.resent(), stack })
 }
 
 /// The setpoints of a run, as `--setpoints` of both commands writes them.

@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-use rigless::emulator::{Driver, Host, Stop};
+use rigless::emulator::{Driver, Host, Settled, Stop};
 use rigless::machine::stm32h743_bench::Stm32h743Bench;
 use rigless::session::Session;
 use rigless::time::VirtualNanos;
@@ -14,6 +14,8 @@ use rigless::time::VirtualNanos;
 use crate::Error;
 use crate::image::Image;
 use crate::line::{POWER_UP_US, Shared, lock, share};
+use crate::machine::Machine;
+use crate::machine::servo_axes::{MILL, ServoAxes};
 use crate::run::{board, execute};
 use crate::socket::{Socket, Traffic, Wire};
 
@@ -61,6 +63,7 @@ pub fn serve(
     let socket = share(Socket::new(listener).map_err(|error| failed(&error))?);
     let mut session = board(Wire(socket.clone()))?;
     session.run_until(VirtualNanos(POWER_UP_US * 1_000));
+    let machine = Machine { servo_axes: Some(ServoAxes::new(MILL)?), ..Machine::default() };
     let start = Instant::now();
     let keeper = Keeper {
         socket: socket.clone(),
@@ -70,6 +73,8 @@ pub fn serve(
         clock: None,
         heard: 0,
         now: 0,
+        look: POWER_UP_US * 1_000,
+        machine,
     };
     let keeper = execute(image, session, keeper)?;
     let traffic = lock(&socket).traffic();
@@ -87,6 +92,9 @@ struct Keeper {
     /// When the host was last heard, in ns.
     heard: u64,
     now: u64,
+    /// When to look at the socket next, in ns.
+    look: u64,
+    machine: Machine,
 }
 
 impl Keeper {
@@ -103,8 +111,23 @@ impl Keeper {
 }
 
 impl Driver<Stm32h743Bench> for Keeper {
-    fn on_stop(&mut self, _: &mut Session<Stm32h743Bench>, stop: Stop, _: &mut dyn Host) -> Option<VirtualNanos> {
+    fn on_settled(&mut self, session: &mut Session<Stm32h743Bench>, _: &mut dyn Host, settled: Settled) {
+        let Settled::Access { access, value } = settled else { return };
+        self.machine.see(&access, value);
+        if let Some(next) = self.machine.next()
+            && next < session.until().0
+        {
+            session.run_until(VirtualNanos(next));
+        }
+    }
+
+    fn on_stop(&mut self, session: &mut Session<Stm32h743Bench>, stop: Stop, _: &mut dyn Host) -> Option<VirtualNanos> {
         self.now = stop.at.0;
+        self.machine.act(session.board_mut(), stop.at);
+        let next = |look: u64, machine: &Machine| VirtualNanos(machine.next().map_or(look, |next| next.min(look)));
+        if self.now < self.look {
+            return Some(next(self.look, &self.machine));
+        }
         if self.ended.load(Ordering::Relaxed) || self.end.is_some_and(|end| Instant::now() >= end) {
             return None;
         }
@@ -117,6 +140,7 @@ impl Driver<Stm32h743Bench> for Keeper {
         } else {
             self.hold(self.now);
         }
-        Some(VirtualNanos(self.now + LOOK))
+        self.look = self.now + LOOK;
+        Some(next(self.look, &self.machine))
     }
 }

@@ -21,7 +21,7 @@ const GAP_US: u64 = 20_000;
 /// Says `lines` to the controller and returns what it answered and what it did.
 fn say(image: &Image, lines: Vec<Vec<u8>>) -> (Vec<Report>, Seen) {
     let script = share(Script::new(lines, GAP_US));
-    let seen = run(image, script.clone(), 5.0, |_| {}).unwrap();
+    let (seen, _) = run(image, script.clone(), 5.0, |_| {}).unwrap();
     let reports = lock(&script).reports.clone();
     (reports, seen)
 }

@@ -2,14 +2,19 @@
 
 mod common;
 
-use board::jobs::diagonal;
-use board::pins::{SLOTS, Step};
-use board::run::run_job;
-use common::steps_image;
-use shared::fixed::Fixed;
+use board::jobs::{all_ways, diagonal};
+use board::line::{JobTalker, share};
+use board::machine::step_drivers::{SLOTS, Step, StepDrivers};
+use board::machine::wiring::Fault;
+use board::run::{run, run_job};
+use common::{start_of, steps_image};
+use shared::fixed::{Fixed, UNITS_PER_MM};
 use shared::piece::{Header, Piece};
 use shared::steps::decoder::Decoder;
 use shared::steps::{Half, Pin, StepSettings};
+
+/// A tick in ns, rounded up.
+const TICK_NS: u64 = 976_563;
 
 /// The axes as they are wired and set; `firmware/src/axes/steps.rs` is told the same.
 fn settings() -> [StepSettings; 3] {
@@ -43,19 +48,15 @@ fn host(start: [Fixed; 3], setpoints: &[[i32; 3]]) -> Vec<Step> {
     steps
 }
 
-fn compare((header, pieces): (Header<f32>, Vec<Piece<f32>>), ticks: usize) {
-    let [x, y] = pieces[0].origin;
+/// Runs a job on the board and compares every pulse. Returns the drivers.
+fn compare((header, pieces): (Header<f32>, Vec<Piece<f32>>), ticks: usize) -> StepDrivers {
     let run = run_job(&steps_image(), header, pieces.clone(), 1.0, |probe| probe.look_at_pins()).unwrap();
     let setpoints: Vec<_> = run.seen.ticks.iter().map(|tick| tick.setpoint).collect();
     assert!(setpoints.len() > ticks, "{}", setpoints.len());
-    // Where the firmware takes the machine to stand: at the path's first point, which the loader reports to the tick.
-    let start = shared::loader::Loader::new(&header, shared::TICK).and_then(|mut loader| {
-        loader.load(&pieces[0])?;
-        Ok(loader.start())
-    });
-    let [first_x, first_y] = start.unwrap().unwrap_or([x, y]);
-    let host = host([first_x, first_y, Fixed(0)], &setpoints);
-    let pins = &run.seen.pins.steps;
+    let start = start_of(&header, &pieces);
+    let host = host(start, &setpoints);
+    let drivers = run.machine.step_drivers.unwrap();
+    let pins = &drivers.steps;
     assert!(host.len() > ticks && !pins.is_empty(), "{} {}", host.len(), pins.len());
     // One shift for all of them, of whole ticks: when the job was started.
     let shift = pins[0].1 - host[0].1;
@@ -64,10 +65,18 @@ fn compare((header, pieces): (Header<f32>, Vec<Piece<f32>>), ticks: usize) {
     assert_eq!(differs, None, "the first step that differs");
     // The last tick's words may still be on their way when the host hears that the job has ended.
     assert_eq!(host.len(), pins.len());
-    for axis in 0..2 {
-        let least = run.seen.pins.least(axis);
-        assert!(least.pulse >= 1 && least.gap >= 1 && least.setup >= 10 && least.hold >= 10, "{axis}: {least:?}");
+    for (axis, driver) in drivers.drivers.iter().enumerate() {
+        assert_eq!(driver.violations(), [""; 0], "axis {axis}: {:?}", driver.least());
+        // A pulse has two edges.
+        let count = pins.iter().filter(|&&(of, ..)| of == axis).count();
+        assert_eq!(driver.edges[0], 2 * count as u64);
+        // The steps lead from the step next to the start to the one next to the end.
+        let last = setpoints.last().unwrap()[axis];
+        let first = start[axis].0;
+        let nearest = |units: i32| (f64::from(units) / UNITS_PER_MM * 8_000.0 + 0.5).floor() as i64;
+        assert_eq!(driver.position(), nearest(last) - nearest(first), "axis {axis}");
     }
+    drivers
 }
 
 /// Both axes near 900 000 steps/s, for a quarter of a second: the pins, the words and the drives' times.
@@ -82,24 +91,51 @@ fn slow_pulses_are_the_simulators() {
     compare(diagonal(20_000.0), 200);
 }
 
-/// The stop input in the middle of a job, at instants that fall anywhere in a tick: the enable output is off and the last edge is past
-/// within a tick; it is a few instructions in fact.
+/// A whole job with reversals: every axis turns around, slowly and at once, in all pairs of directions.
+#[test]
+fn a_job_in_all_directions_is_the_simulators() {
+    let drivers = compare(all_ways(), 700);
+    let both = |axis: usize| {
+        [true, false].map(|way| drivers.steps.iter().filter(|step| (step.0, step.2) == (axis, way)).count())
+    };
+    for axis in 0..2 {
+        let [forward, backward] = both(axis);
+        assert!(forward > 10_000 && backward > 10_000, "axis {axis}: {forward} and {backward} steps");
+        assert!(drivers.drivers[axis].edges[1] >= 4, "axis {axis} turned around");
+    }
+    assert_eq!(both(2), [0, 0]);
+}
+
+/// The stop input at random instants of a job, so anywhere in a tick: the enable output is off and the last pulse is past within a
+/// tick; it is a few instructions in fact.
 #[test]
 fn a_stop_ends_the_pulses_within_a_tick() {
-    for after in [3_141_592, 10_000_001, 27_182_818, 40_499_999] {
+    let image = steps_image();
+    // A linear congruential generator, Knuth's: the instants are the same every time.
+    let mut seed = 20_181_004_u64;
+    let random = std::iter::repeat_with(|| {
+        seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (seed >> 33) * 40_000_000 >> 31
+    });
+    let chosen = [3_141_592, 10_000_001];
+    for after in chosen.into_iter().chain(random.take(14)) {
         let (header, pieces) = diagonal(900_000.0);
-        let mut seen = None;
-        let talker = board::line::share(board::line::JobTalker::new(header, pieces));
-        let run = board::run::run(&steps_image(), talker, 0.12, |probe| {
+        let talker = share(JobTalker::new(header, pieces));
+        let (_, machine) = run(&image, talker, 1.0, |probe| {
             probe.look_at_pins();
-            probe.press_stop_after(after);
-        });
-        let seen = seen.insert(run.unwrap());
-        let (pressed, disabled) = (seen.pressed.unwrap(), seen.disabled.unwrap());
+            probe.inject_after(after, Fault::EmergencyStop);
+            probe.end_after(after + 3 * TICK_NS);
+        })
+        .unwrap();
+        let drivers = machine.step_drivers.unwrap();
+        let &[(pressed, Fault::EmergencyStop, true)] = &*machine.switches.happened else { panic!("{after}") };
+        let disabled = machine.disabled.unwrap();
         assert!((pressed..pressed + 2_000).contains(&disabled), "{after}: off {} ns later", disabled - pressed);
-        let &(off, false) = seen.pins.enabled.last().unwrap() else { panic!("{after}: still enabled") };
-        let &(_, last, _) = seen.pins.steps.last().unwrap();
+        let &(off, false) = drivers.enabled.last().unwrap() else { panic!("{after}: still enabled") };
+        let &(_, last, _) = drivers.steps.last().unwrap();
         assert!(last <= off && off - last <= SLOTS, "{after}: off in slot {off}, last step in {last}");
-        assert!(seen.pins.steps.len() > 1_000, "{after}: in motion before");
+        let way: i64 = drivers.drivers.iter().map(|driver| driver.position().abs()).sum();
+        // Two axes at 900 000 steps/s, less what was still to come.
+        assert!(way as f64 > 1.7e-3 * after as f64 - 4_000.0, "{after}: {way} steps, in motion before");
     }
 }

@@ -1,0 +1,115 @@
+//! Step drivers at their pins: every slot they are looked at, instant by instant, and held against their data sheet.
+
+use rigless::device::Level;
+use rigless::emulator::{Access, AccessKind};
+use rigless::machine::stm32h743_bench::Stm32h743Bench;
+use rigless::soc::stm32h743::peripherals::gpio::Pin;
+use rigless::time::VirtualNanos;
+use shared::steps::receiver::{Least, Receiver};
+
+use super::wiring::{ENABLE, Pad, SLOT_TIMER, STEPS};
+
+/// Slots in a tick.
+pub const SLOTS: u64 = 1_875;
+
+/// A step as a driver saw it: the axis, the slot since the clock of the slots was started, and whether forward.
+pub type Step = (usize, u64, bool);
+
+/// What the drivers' data sheet asks for at least, in slots; `firmware/src/axes/steps.rs` is told the same.
+pub const ASKED: Least = Least { pulse: 1, gap: 1, setup: 10, hold: 10 };
+
+/// One driver.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct StepDriver {
+    receiver: Receiver,
+    /// Both inputs as they were seen last.
+    levels: [bool; 2],
+    /// Edges of the step input and of the direction input, both ways.
+    pub edges: [u64; 2],
+}
+
+impl StepDriver {
+    fn see(&mut self, slot: u64, levels: [bool; 2]) -> Option<bool> {
+        for (edges, (before, now)) in self.edges.iter_mut().zip(self.levels.into_iter().zip(levels)) {
+            *edges += u64::from(before != now);
+        }
+        self.levels = levels;
+        let [step, direction] = levels;
+        self.receiver.see(slot, step, direction)
+    }
+
+    /// Where the steps have led.
+    pub fn position(&self) -> i64 {
+        self.receiver.position()
+    }
+
+    /// The least times at its inputs, in slots.
+    pub fn least(&self) -> Least {
+        self.receiver.least()
+    }
+
+    /// What it was not given the time for, of [`ASKED`]; nothing where all is well.
+    pub fn violations(&self) -> Vec<String> {
+        let (seen, asked) = (self.least(), ASKED);
+        let times = [
+            ("pulse", seen.pulse, asked.pulse),
+            ("gap", seen.gap, asked.gap),
+            ("setup", seen.setup, asked.setup),
+            ("hold", seen.hold, asked.hold),
+        ];
+        let short = times.into_iter().filter(|(_, seen, asked)| seen < asked);
+        short.map(|(name, seen, asked)| format!("{name} of {seen} slots, {asked} asked for")).collect()
+    }
+}
+
+/// Three drivers, looked at in the middle of every slot.
+#[derive(Clone, Debug, Default)]
+pub struct StepDrivers {
+    /// When the slots' timer was started, in ns.
+    started: Option<u64>,
+    slot: u64,
+    /// Each driver.
+    pub drivers: [StepDriver; 3],
+    /// Every step.
+    pub steps: Vec<Step>,
+    /// Every look at which the enable output was another than at the one before: the slot and the level.
+    pub enabled: Vec<(u64, bool)>,
+}
+
+impl StepDrivers {
+    /// Takes note of an access of the core: where it starts the slots' timer, the slots begin now. The first word is played half a
+    /// slot later.
+    pub fn see(&mut self, access: &Access) {
+        if access.kind == AccessKind::Write && access.address == SLOT_TIMER && access.value & 1 != 0 {
+            (self.started, self.slot) = (Some(access.virtual_time.0), 0);
+        }
+    }
+
+    /// When to look next: words are played at the halves of slots, so at the whole ones nothing changes.
+    pub fn next(&self) -> Option<u64> {
+        // A slot is 10^9/(1024 * 1875) ns = 15625/30 ns.
+        self.started.map(|started| started + (self.slot + 1) * 15_625 / 30)
+    }
+
+    /// Looks at all pins, if it is time to.
+    pub fn act(&mut self, board: &mut Stm32h743Bench, now: VirtualNanos) {
+        if self.next().is_none_or(|next| now.0 < next) {
+            return;
+        }
+        let mut is_high = |pad: Pad| {
+            board.mcu.drive_port(now, pad.port, |gpio, registers, _| {
+                Pin::new(pad.bit).is_some_and(|pin| gpio.level(pin, registers) == Level::High)
+            })
+        };
+        for (axis, (driver, pads)) in self.drivers.iter_mut().zip(STEPS).enumerate() {
+            if let Some(forward) = driver.see(self.slot, pads.map(&mut is_high)) {
+                self.steps.push((axis, self.slot, forward));
+            }
+        }
+        let enabled = is_high(ENABLE);
+        if self.enabled.last().is_none_or(|(_, before)| *before != enabled) {
+            self.enabled.push((self.slot, enabled));
+        }
+        self.slot += 1;
+    }
+}
