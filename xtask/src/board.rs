@@ -10,7 +10,7 @@ use crate::tools::{Outcome, board_cargo, check_board_compiler};
 
 /// Run the firmware on the virtual board, and let hosts speak to it over TCP
 ///
-/// One host at a time; the board goes on when it leaves, and ends with Ctrl-C. With step axes it is some fifteen times slower than a
+/// One host at a time; the board goes on when it leaves, and ends with Ctrl-C. With step axes it is some twenty times slower than a
 /// real one: every word of every slot is played.
 #[derive(Args)]
 #[command(

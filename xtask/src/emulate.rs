@@ -33,6 +33,9 @@ pub struct Emulate {
     /// How a tick integrates the feed law: 1, 2, 3 or exact
     #[arg(long, value_name = "ORDER")]
     order: Option<String>,
+    /// What the image moves; with step axes every word of every slot is played, which takes some twenty times the job's own time
+    #[arg(long, value_enum, default_value_t)]
+    axes: Axes,
     /// Write the result as JSON; `-` is standard output
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
@@ -44,7 +47,7 @@ pub struct Emulate {
 impl Emulate {
     /// Prepares the job, builds the image, and runs it.
     pub fn run(self) -> Outcome {
-        let image = firmware(Axes::Servos)?;
+        let image = firmware(self.axes)?;
         let job = self.prepare()?;
         check_board_compiler()?;
         let mut board = board_cargo(&["run", "--release", "--quiet"])?;

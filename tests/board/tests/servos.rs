@@ -61,13 +61,13 @@ fn compare(name: &str) {
     let pieces: Vec<_> = path.wire().collect();
     let start = start_of(&path.header, &pieces);
     let run = run_job(&image(), path.header, pieces, time, |probe| {
-        probe.machine.servo_axes = Some(ServoAxes::new(MILL).unwrap());
+        probe.machine.servo_axes = Some(ServoAxes::new(MILL).unwrap().recording());
     })
     .unwrap();
 
     let plant = Plant::from_toml(MILL, f64::from(shared::TICK)).unwrap();
     let mut twins = [0, 1].map(|axis| Twin::new(plant.axes()[axis].detached(), start[axis]));
-    let exchanges = &run.machine.servo_axes.unwrap().exchanges;
+    let exchanges = run.machine.servo_axes.unwrap().exchanges.unwrap();
     // The tick that takes the start is the one before the first of the job.
     let first = run.seen.idle as usize - 1;
     assert!(

@@ -115,7 +115,7 @@ fn a_stop_ends_the_pulses_within_a_tick() {
     let mut seed = 20_181_004_u64;
     let random = std::iter::repeat_with(|| {
         seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (seed >> 33) * 40_000_000 >> 31
+        ((seed >> 33) * 40_000_000) >> 31
     });
     let chosen = [3_141_592, 10_000_001];
     for after in chosen.into_iter().chain(random.take(14)) {

@@ -72,8 +72,8 @@ pub struct ServoAxes {
     enabled: bool,
     /// When the tick began, in ns.
     began: u64,
-    /// Every tick's exchange with x and y.
-    pub exchanges: Vec<[Exchange; 2]>,
+    /// Every tick's exchange with x and y, where they are kept: see [`ServoAxes::recording`].
+    pub exchanges: Option<Vec<[Exchange; 2]>>,
 }
 
 impl ServoAxes {
@@ -88,7 +88,12 @@ impl ServoAxes {
             let spare = Tim::new(TIMERS[timer]);
             Ok(Wheel { wires, axis, datum, shown: 0, edges: VecDeque::new(), timer, spare, read: None })
         });
-        Ok(Self { wheels: wheels.collect::<Result<_, Error>>()?, enabled: false, began: 0, exchanges: Vec::new() })
+        Ok(Self { wheels: wheels.collect::<Result<_, Error>>()?, enabled: false, began: 0, exchanges: None })
+    }
+
+    /// Keeps every tick's exchange, for a run that ends.
+    pub fn recording(self) -> Self {
+        Self { exchanges: Some(Vec::new()), ..self }
     }
 
     /// Takes note of an access of the core.
@@ -123,7 +128,9 @@ impl ServoAxes {
             let asked = if self.enabled { velocity(exchange.code) } else { 0.0 };
             wheel.turn(asked, now, self.began);
         }
-        self.exchanges.push(exchange);
+        if let Some(exchanges) = &mut self.exchanges {
+            exchanges.push(exchange);
+        }
     }
 
     /// When the next edge comes.
@@ -188,4 +195,25 @@ impl Wheel {
 fn lines(count: i32) -> [bool; 2] {
     let phase = count.rem_euclid(4);
     [phase == 1 || phase == 2, phase >= 2]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// One line changes at a time, upwards A before B, and four counts are a period; so has every quadrature encoder.
+    #[test]
+    fn a_leads_upwards() {
+        assert_eq!([0, 1, 2, 3].map(lines), [[false, false], [true, false], [true, true], [false, true]]);
+        for count in -9..9 {
+            let changed = (0..2).filter(|&line| lines(count)[line] != lines(count + 1)[line]).count();
+            assert_eq!((changed, lines(count)), (1, lines(count + 4)));
+        }
+    }
+
+    /// Half scale is rest, and the largest code the full command.
+    #[test]
+    fn codes_are_velocities() {
+        assert_eq!((velocity(2_048), velocity(4_095), velocity(1)), (0.0, FULL_COMMAND, -FULL_COMMAND));
+    }
 }

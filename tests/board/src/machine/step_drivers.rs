@@ -113,3 +113,24 @@ impl StepDrivers {
         self.slot += 1;
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A drawn diagram: a good pulse, then one in the other direction after nine slots of hold and with five of setup.
+    #[test]
+    fn a_driver_says_what_it_was_not_given() {
+        let mut driver = StepDriver::default();
+        for (slot, levels) in [(0, [false, true]), (20, [true, true]), (21, [false, true])] {
+            driver.see(slot, levels);
+        }
+        assert_eq!(driver.violations(), [""; 0]);
+        for (slot, levels) in [(30, [false, false]), (35, [true, false]), (36, [false, false])] {
+            driver.see(slot, levels);
+        }
+        assert_eq!(driver.violations(), ["setup of 5 slots, 10 asked for", "hold of 9 slots, 10 asked for"]);
+        // Two pulses; the direction rose once before the first and fell once.
+        assert_eq!((driver.position(), driver.edges), (0, [4, 2]));
+    }
+}
