@@ -1,7 +1,7 @@
 //! A TCP listener as the far end of the serial line: byte for byte, one host at a time.
 //!
 //! A line of three wires has one far end. A host that connects while another is there waits in the listener's queue until that one has
-//! left. What a host does not read is lost once [`KEPT`] bytes wait for it, as on a serial port.
+//! left. What a host does not read is lost once 4 kB wait for it, as on a serial port.
 //!
 //! The socket is looked at when the driver of the run says so, never by the board: in between, what has come and what is to go waits
 //! in two queues, and the port takes it at its own baud rate.

@@ -4,7 +4,7 @@ mod common;
 
 use board::jobs::{all_ways, diagonal};
 use board::line::{JobTalker, share};
-use board::machine::step_drivers::{SLOTS, Step, StepDrivers};
+use board::machine::step_drivers::{ROUTER, SLOTS, Step, StepDrivers};
 use board::machine::wiring::Fault;
 use board::run::{run, run_job};
 use common::{start_of, steps_image};
@@ -50,7 +50,10 @@ fn host(start: [Fixed; 3], setpoints: &[[i32; 3]]) -> Vec<Step> {
 
 /// Runs a job on the board and compares every pulse. Returns the drivers.
 fn compare((header, pieces): (Header<f32>, Vec<Piece<f32>>), ticks: usize) -> StepDrivers {
-    let run = run_job(&steps_image(), header, pieces.clone(), 1.0, |probe| probe.look_at_pins()).unwrap();
+    let run = run_job(&steps_image(), header, pieces.clone(), 1.0, |probe| {
+        probe.machine.step_drivers = Some(StepDrivers::with_motors(ROUTER).unwrap());
+    })
+    .unwrap();
     let setpoints: Vec<_> = run.seen.ticks.iter().map(|tick| tick.setpoint).collect();
     assert!(setpoints.len() > ticks, "{}", setpoints.len());
     let start = start_of(&header, &pieces);
@@ -82,13 +85,24 @@ fn compare((header, pieces): (Header<f32>, Vec<Piece<f32>>), ticks: usize) -> St
 /// Both axes near 900 000 steps/s, for a quarter of a second: the pins, the words and the drives' times.
 #[test]
 fn pulses_at_full_speed_are_the_simulators() {
-    compare(diagonal(900_000.0), 200);
+    let mut drivers = compare(diagonal(900_000.0), 200);
+    // Every pulse is right, and no motor can follow: from rest to 112 mm/s at once is beyond any of this size, so each loses steps.
+    for axis in 0..2 {
+        assert!(drivers.reading(axis).unwrap().lost_steps.abs() >= 4, "axis {axis}");
+    }
 }
 
 /// And slowly, where pulses are far apart.
 #[test]
 fn slow_pulses_are_the_simulators() {
-    compare(diagonal(20_000.0), 200);
+    let mut drivers = compare(diagonal(20_000.0), 200);
+    // 2.5 mm/s at once is nothing to a motor: its table is within a full step of what the pulses say, 1/40 mm.
+    for axis in 0..3 {
+        let reading = drivers.reading(axis).unwrap();
+        let asked = drivers.drivers[axis].position() as f64 / 8_000.0;
+        assert_eq!(reading.lost_steps, 0, "axis {axis}");
+        assert!((reading.position - asked).abs() < 0.025, "axis {axis}: {} of {asked} mm", reading.position);
+    }
 }
 
 /// A whole job with reversals: every axis turns around, slowly and at once, in all pairs of directions.

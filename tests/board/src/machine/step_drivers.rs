@@ -1,5 +1,10 @@
 //! Step drivers at their pins: every slot they are looked at, instant by instant, and held against their data sheet.
+//!
+//! Behind each may stand a motor of [`host_sim::plant`]: pulse by pulse, at the instant of its slot, its field goes on by a microstep.
+//! What the pulses ask for and where the table is are two things then.
 
+use host_sim::plant::Plant;
+use host_sim::plant::axis::{Axis, Command, Reading};
 use rigless::device::Level;
 use rigless::emulator::{Access, AccessKind};
 use rigless::machine::stm32h743_bench::Stm32h743Bench;
@@ -8,6 +13,7 @@ use rigless::time::VirtualNanos;
 use shared::steps::receiver::{Least, Receiver};
 
 use super::wiring::{ENABLE, Pad, SLOT_TIMER, STEPS};
+use crate::Error;
 
 /// Slots in a tick.
 pub const SLOTS: u64 = 1_875;
@@ -62,8 +68,30 @@ impl StepDriver {
     }
 }
 
+/// Stepping motors for the step axes of the firmware; see `firmware/src/axes/steps.rs`.
+pub const ROUTER: &str = include_str!("router.toml");
+
+/// The length of a slot in s.
+const SLOT: f64 = 1.0 / (1_024.0 * SLOTS as f64);
+
+/// What a driver turns.
+struct Motor {
+    axis: Box<dyn Axis + Send>,
+    /// Up to which slot its time has passed.
+    slot: u64,
+    reading: Reading,
+}
+
+impl Motor {
+    fn pass(&mut self, slot: u64, steps: i32) {
+        self.axis.advance(Command::Steps(0), (slot - self.slot) as f64 * SLOT);
+        self.reading = self.axis.advance(Command::Steps(steps), 0.0);
+        self.slot = slot;
+    }
+}
+
 /// Three drivers, looked at in the middle of every slot.
-#[derive(Clone, Debug, Default)]
+#[derive(Default)]
 pub struct StepDrivers {
     /// When the slots' timer was started, in ns.
     started: Option<u64>,
@@ -74,14 +102,36 @@ pub struct StepDrivers {
     pub steps: Vec<Step>,
     /// Every look at which the enable output was another than at the one before: the slot and the level.
     pub enabled: Vec<(u64, bool)>,
+    /// Motors of x, y and z; fewer, or none, where nobody asks where they are.
+    motors: Vec<Motor>,
 }
 
 impl StepDrivers {
+    /// Drivers with the motors of a machine in TOML, at rest at 0.
+    pub fn with_motors(plant: &str) -> Result<Self, Error> {
+        let plant = Plant::from_toml(plant, f64::from(shared::TICK)).map_err(|error| Error::new(error.to_string()))?;
+        let motor = |mut axis: Box<dyn Axis + Send>| {
+            let reading = axis.rest_at(0.0);
+            Motor { axis, slot: 0, reading }
+        };
+        Ok(Self { motors: plant.axes().iter().map(|driven| motor(driven.detached())).collect(), ..Self::default() })
+    }
+
+    /// Where a motor's table stands now, and how many full steps the motor has fallen away.
+    pub fn reading(&mut self, axis: usize) -> Option<Reading> {
+        let motor = self.motors.get_mut(axis)?;
+        motor.pass(self.slot.max(motor.slot), 0);
+        Some(motor.reading)
+    }
+
     /// Takes note of an access of the core: where it starts the slots' timer, the slots begin now. The first word is played half a
     /// slot later.
     pub fn see(&mut self, access: &Access) {
         if access.kind == AccessKind::Write && access.address == SLOT_TIMER && access.value & 1 != 0 {
             (self.started, self.slot) = (Some(access.virtual_time.0), 0);
+            for motor in &mut self.motors {
+                motor.slot = 0;
+            }
         }
     }
 
@@ -104,6 +154,9 @@ impl StepDrivers {
         for (axis, (driver, pads)) in self.drivers.iter_mut().zip(STEPS).enumerate() {
             if let Some(forward) = driver.see(self.slot, pads.map(&mut is_high)) {
                 self.steps.push((axis, self.slot, forward));
+                if let Some(motor) = self.motors.get_mut(axis) {
+                    motor.pass(self.slot, if forward { 1 } else { -1 });
+                }
             }
         }
         let enabled = is_high(ENABLE);
