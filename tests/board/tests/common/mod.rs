@@ -3,8 +3,11 @@
 use std::path::{Path, PathBuf};
 
 use board::image::Image;
-use board::mounting::Mounting;
+use board::machine::Mounting;
+use shared::fixed::{Fixed, Position};
+use shared::loader::Loader;
 use shared::machine::MachineSettings;
+use shared::piece::{Header, Piece};
 
 /// The top-level directory.
 pub fn root() -> PathBuf {
@@ -33,6 +36,15 @@ pub fn steps() -> Mounting {
 #[allow(dead_code, reason = "each file of tests has a copy of this module, and not all need it")]
 pub fn machine(name: &str) -> MachineSettings {
     host_sim::machine::read(root().join("examples").join(name).to_str().unwrap()).unwrap()
+}
+
+/// Where the firmware takes the machine to stand when a job begins: at the path's first point, which the loader reports to the tick.
+#[allow(dead_code, reason = "each file of tests has a copy of this module, and not all need it")]
+pub fn start_of(header: &Header<f32>, pieces: &[Piece<f32>]) -> Position {
+    let mut loader = Loader::new(header, shared::TICK).unwrap();
+    loader.load(&pieces[0]).unwrap();
+    let [x, y] = loader.start().unwrap();
+    [x, y, Fixed(0)]
 }
 
 fn built(name: &str) -> Image {
