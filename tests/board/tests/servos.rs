@@ -21,7 +21,7 @@ const AXIS: ServoSettings = ServoSettings {
     integral_gain: 0.0,
     velocity_feedforward: 1.0,
     acceleration_feedforward: 0.0,
-    drive: DriveSettings::Velocity { lag: 0.0, limit: 250.0 },
+    drive: DriveSettings::Velocity { lag: 0.0, limit: 800.0 },
 };
 
 /// One axis without the board: the same servo, the same plant, and a converter of 12 bits between them.
@@ -45,7 +45,7 @@ impl Twin {
         let counter = self.counts as u16;
         let command = self.servo.step(&mut self.state, setpoint, self.counts);
         // The part of the full command that it is, in codes, each as an f32.
-        let level = command * (1.0 / 250.0_f32);
+        let level = command * (1.0 / 800.0_f32);
         let code = (2_048 + (level * 2_047.0).round() as i32) as u16;
         let reading = self.axis.advance(Command::Velocity(velocity(code)), f64::from(shared::TICK));
         self.counts = reading.counts.wrapping_sub(self.datum);

@@ -24,7 +24,7 @@ use crate::Error;
 pub const MILL: &str = include_str!("mill-plant.toml");
 
 /// The velocity that a drive takes the largest code for, in mm/s.
-pub const FULL_COMMAND: f64 = 250.0;
+pub const FULL_COMMAND: f64 = 800.0;
 
 /// The code for rest: half scale.
 const ZERO: i32 = 2_048;
