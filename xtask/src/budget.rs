@@ -29,8 +29,15 @@ const PIECE_BAR: u32 = 180;
 /// The stages that this bar is about: the point and the rate, the factor of the ramp, and the step of equation (22).
 const PIECE_STAGES: [&str; 3] = ["curve", "feed law", "interpolator"];
 
-/// Instructions of the whole interrupt at order 1, at most.
-const INTERRUPT_BAR: u32 = 800;
+/// Instructions that move two servo axes at order 1, at most: the whole interrupt but what watches over it.
+const MOTION_BAR: u32 = 800;
+
+/// The stages that watch over it.
+const WATCH_STAGES: [&str; 2] = ["safety", "control"];
+
+/// Instructions of the whole interrupt with two servo axes at order 1, at a node too, at most: as many as three step axes may take at
+/// rest.
+const INTERRUPT_BAR: u32 = 1_500;
 
 /// The machines in which it is measured.
 const SERVOS: &str = "examples/mill-servos.toml";
@@ -226,6 +233,12 @@ impl Figures {
             let most = self.instructions.get(kind).and_then(|row| row.get("most")).copied().unwrap_or(u32::MAX);
             if most > INTERRUPT_BAR {
                 faults.push(format!("the interrupt takes {most} instructions on {kind}; {INTERRUPT_BAR} are allowed"));
+            }
+            let row = self.instructions.get(kind);
+            let watch = row.map_or(0, |row| WATCH_STAGES.iter().filter_map(|stage| row.get(*stage)).sum());
+            let motion = row.and_then(|row| row.get("median")).map_or(u32::MAX, |median| median.saturating_sub(watch));
+            if motion > MOTION_BAR {
+                faults.push(format!("motion takes {motion} instructions on {kind}; {MOTION_BAR} are allowed"));
             }
         }
         for (name, column, bar) in STEP_BARS {

@@ -15,7 +15,8 @@ use crate::tools::{Failure, Outcome, board_cargo, cargo, check_board_compiler, r
 pub struct Emulate {
     /// The job
     job: String,
-    /// The machine that the board is told
+    /// The machine that the board is told; with step axes every word of every slot is played, which takes some twenty times the job's own
+    /// time
     #[arg(long, value_name = "MACHINE.toml", default_value = "examples/mill-servos.toml")]
     machine: String,
     /// w: 0 keeps the feed of the contact point, 1 that of the tool's centre

@@ -1,6 +1,7 @@
 //! `cargo xtask`: everything that is done with the whole tree, one module a verb.
 #![forbid(unsafe_code)]
 
+mod board;
 mod budget;
 mod build;
 mod ci;
@@ -26,6 +27,7 @@ enum Verb {
     Build(build::Build),
     Flash(flash::Flash),
     Emulate(Box<emulate::Emulate>),
+    Board(board::Board),
     Budget(budget::Budget),
     Test(test::Test),
     Ci(ci::Ci),
@@ -36,6 +38,7 @@ fn main() -> ExitCode {
         Verb::Build(verb) => verb.run(),
         Verb::Flash(verb) => verb.run(),
         Verb::Emulate(verb) => verb.run(),
+        Verb::Board(verb) => verb.run(),
         Verb::Budget(verb) => verb.run(),
         Verb::Test(verb) => verb.run(),
         Verb::Ci(verb) => verb.run(),

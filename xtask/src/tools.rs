@@ -99,7 +99,8 @@ pub fn watch(command: &mut Command, mut line: impl FnMut(&str)) -> Outcome<bool>
     Ok(status.success())
 }
 
-fn not_started(command: &Command, error: &std::io::Error) -> Failure {
+/// A command that cannot be run.
+pub fn not_started(command: &Command, error: &std::io::Error) -> Failure {
     Failure::new(format!("{} cannot be run: {error}", command.get_program().to_string_lossy()))
 }
 

@@ -7,7 +7,7 @@ use serde::Serialize;
 use crate::Error;
 use crate::image::Image;
 use crate::jobs::{Kind, ORDERS, diagonal, job};
-use crate::mounting::Mounting;
+use crate::machine::Mounting;
 use crate::probe::EXCEPTION_FRAME;
 use crate::reach::Reach;
 use crate::run::run_job;
@@ -36,7 +36,7 @@ pub struct Budget {
     pub reached: Vec<String>,
 }
 
-/// Measures `image` in a machine of servo axes that do not move; `progress` is told what is measured next.
+/// Measures `image` in a machine of servo axes; `progress` is told what is measured next.
 pub fn measure(image: &Image, servos: &Mounting, mut progress: impl FnMut(&str)) -> Result<Budget, Error> {
     let reach = Reach::of_tick(image)?;
     let stages = Stages::new(image)?;

@@ -106,6 +106,42 @@ pub fn diagonal(steps_per_s: f64) -> (Header<f32>, Vec<Piece<f32>>) {
     twice(header, first)
 }
 
+/// A circle of 2 mm radius anticlockwise, a quarter of a smaller one back, a needle and its way back: every axis turns around several
+/// times, in all pairs of directions, slowly on the circle and at once at the needle's ends. At 25 mm/s, about 0.8 s.
+pub fn all_ways() -> (Header<f32>, Vec<Piece<f32>>) {
+    let header = Header {
+        weight: 0.5,
+        order: Order::First,
+        closed: false,
+        tolerance: 1e-3,
+        rest: false,
+        pace: PaceLimits::USUAL,
+    };
+    let arc = |x: f32, y: f32, sweep| Shape::Arc { radius: Complex::new(x, y), sweep, ratio: 1.0 };
+    let line = |x: f32, y: f32| Shape::Line { chord: Complex::new(x, y) };
+    let half = std::f32::consts::PI;
+    let shapes =
+        [arc(2.0, 0.0, half), arc(-2.0, 0.0, half), arc(-1.0, 0.0, -half / 2.0), line(1.5, -0.4), line(-1.5, 0.4)];
+    let mut at = round_point(Complex::new(12.0, -7.0));
+    let mut pieces = Vec::new();
+    for shape in shapes {
+        let interval = [0.0, 1.0];
+        let mut piece =
+            Piece { origin: at, shape, interval, feed: 25.0, start: None, end: None, further: None, last: None };
+        let Some([start, _]) = ends(&header, &piece) else { return (header, Vec::new()) };
+        for (origin, (at, start)) in piece.origin.iter_mut().zip(at.into_iter().zip(start)) {
+            origin.0 += at.0 - start.0;
+        }
+        let Some([_, end]) = ends(&header, &piece) else { return (header, Vec::new()) };
+        at = end;
+        pieces.push(piece);
+    }
+    if let Some(last) = pieces.last_mut() {
+        last.last = Some([at[0], at[1], Fixed(0)]);
+    }
+    (header, pieces)
+}
+
 /// Where a piece begins and where it ends: what a planner would know.
 fn ends(header: &Header<f32>, piece: &Piece<f32>) -> Option<[[Fixed; 2]; 2]> {
     let active = ActivePiece::activate(piece, header.weight, shared::TICK).ok()?;

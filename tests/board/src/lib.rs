@@ -6,11 +6,12 @@
 //! | module | what |
 //! | --- | --- |
 //! | [`image`] | the linked image: symbols, code, the interrupt's first instruction and its ends, every call |
-//! | [`mounting`] | the machine that the board is told, and the switches at its inputs |
 //! | [`line`](mod@line) | the far end of the serial line: whoever speaks to the controller |
-//! | [`pins`] | step drives at the pins, slot by slot |
+//! | [`machine`] | what the board is told of its machine, and what hangs on the pins: drivers, servo axes with their encoders, switches |
 //! | [`probe`] | counts instructions of each tick, reads its setpoint in RAM, measures its stack |
 //! | [`run`](mod@run) | one image, one conversation, until it ends |
+//! | [`socket`] | a TCP listener as the far end of the line |
+//! | [`serve`](mod@serve) | the board behind that listener, in real time |
 //! | [`stages`] | which source file each executed instruction came from |
 //! | [`reach`] | what the tick can call, from the machine code |
 //! | [`jobs`] | small jobs of one kind of piece each, for budgets |
@@ -25,11 +26,12 @@ pub mod budget;
 pub mod image;
 pub mod jobs;
 pub mod line;
-pub mod mounting;
-pub mod pins;
+pub mod machine;
 pub mod probe;
 pub mod reach;
 pub mod run;
+pub mod serve;
+pub mod socket;
 pub mod stages;
 
 /// What went wrong with a run, as one sentence.

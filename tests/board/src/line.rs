@@ -10,9 +10,11 @@ use rigless::snapshot::Store;
 use rigless::time::VirtualNanos;
 use shared::link::{Decoder, Ending, Event, Received, Report, Sender, SenderError, Telemetry};
 use shared::piece::{Header, Piece};
+use shared::safety::Coordinates;
 
-/// The controller has its receiver on by then; what comes before is lost, as on a bench.
-const POWER_UP_US: u64 = 5_000;
+/// The controller has its receiver on by then, with a machine that was written into its empty flash before; what comes before is lost, as
+/// on a bench.
+pub(crate) const POWER_UP_US: u64 = 15_000;
 
 /// The session of a conversation. The board starts anew each time, so that it may be the same.
 pub const SESSION: u32 = 0x0b0a_4d01;
@@ -91,6 +93,8 @@ impl JobTalker {
     /// A talker with this job. The job is kept for the life of the process: the sender borrows it, and there are few.
     pub fn new(header: Header<f32>, pieces: Vec<Piece<f32>>) -> Self {
         let sender = Sender::new(SESSION, Box::leak(Box::new(header)), pieces.leak());
+        // No axis is homed: the job begins where the machine stands.
+        let sender = sender.in_coordinates(Coordinates::Relative);
         Self { sender, finished: None, ended: None, telemetry: None }
     }
 

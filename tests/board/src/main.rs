@@ -1,17 +1,22 @@
-//! The virtual board as a command: runs a prepared job on an image, or measures an image. `cargo xtask` is what a person uses.
+//! The virtual board as a command: runs a prepared job on an image, measures an image, or serves hosts. `cargo xtask` is what a person uses.
 #![forbid(unsafe_code)]
 
 use std::fs::File;
 use std::io::{BufWriter, Write};
+use std::net::TcpListener;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+use std::time::Duration;
 
 use board::Error;
 use board::budget::{measure, measure_steps, median};
 use board::image::Image;
-use board::mounting::Mounting;
+use board::machine::Mounting;
 use board::probe::{EXCEPTION_FRAME, Tick};
 use board::run::run_job;
+use board::serve::{Pace, Served, serve};
 use clap::{Args, Parser, Subcommand};
 use serde::Serialize;
 use shared::piece::{Header, Piece};
@@ -28,6 +33,7 @@ enum Verb {
     Run(Run),
     Budget(Budget),
     Sizes(Sizes),
+    Serve(Serve),
 }
 
 /// Send a job to the image over its serial link and run it to its end
@@ -71,6 +77,26 @@ struct Sizes {
     elf: PathBuf,
 }
 
+/// Let hosts speak to the image over TCP
+#[derive(Args)]
+struct Serve {
+    /// The image
+    #[arg(long, value_name = "ELF")]
+    elf: PathBuf,
+    /// The machine that the board is told
+    #[arg(long, value_name = "MACHINE.toml")]
+    machine: String,
+    /// Where to listen
+    #[arg(long, value_name = "HOST:PORT")]
+    listen: String,
+    /// Go as fast as it goes, not as the clock on the wall
+    #[arg(long)]
+    fast: bool,
+    /// End after so many seconds
+    #[arg(long, value_name = "N", value_parser = seconds_from)]
+    seconds: Option<Duration>,
+}
+
 /// The result of `run`.
 #[derive(Serialize)]
 struct RunResult {
@@ -96,6 +122,7 @@ fn main() -> ExitCode {
         Verb::Run(run) => run.run(),
         Verb::Budget(budget) => budget.run(),
         Verb::Sizes(sizes) => sizes.run(),
+        Verb::Serve(serve) => serve.run(),
     };
     match outcome {
         Ok(()) => ExitCode::SUCCESS,
@@ -162,6 +189,33 @@ impl Sizes {
     fn run(self) -> Result<(), Error> {
         print_json(&Image::read(&self.elf)?.sizes())
     }
+}
+
+impl Serve {
+    fn run(self) -> Result<(), Error> {
+        let image = Image::read(&self.elf)?;
+        let refused = |error: std::io::Error| Error::new(format!("{}: {error}", self.listen));
+        let listener = TcpListener::bind(&self.listen).map_err(refused)?;
+        let ended = Arc::new(AtomicBool::new(false));
+        signal_hook::flag::register(signal_hook::consts::SIGINT, ended.clone()).map_err(refused)?;
+        println!("listening at {}", listener.local_addr().map_err(refused)?);
+        // Whoever waits for this line waits for all of it.
+        std::io::stdout().flush().map_err(refused)?;
+        let pace = if self.fast { Pace::Fast } else { Pace::Real };
+        let Served { traffic, virtual_s, real_s } =
+            serve(&image, &mounting(&self.machine)?, listener, pace, self.seconds, ended)?;
+        println!(
+            "{} hosts, {} bytes from them and {} to them; {virtual_s:.3} s of the board in {real_s:.3} s",
+            traffic.hosts, traffic.from_hosts, traffic.to_hosts
+        );
+        Ok(())
+    }
+}
+
+/// A duration in s, above 0.
+fn seconds_from(text: &str) -> Result<Duration, String> {
+    let seconds = text.parse().ok().and_then(|seconds| Duration::try_from_secs_f64(seconds).ok());
+    seconds.filter(|seconds| !seconds.is_zero()).ok_or_else(|| format!("`{text}` is no time; give seconds above 0"))
 }
 
 fn print(result: &RunResult) {

@@ -3,17 +3,19 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
-use rigless::emulator::{AccessKind, Driver, Hit, Host, Settled, Stop, Watch};
+use rigless::emulator::{Driver, Hit, Host, Settled, Stop, Watch};
 use rigless::machine::stm32h743_bench::Stm32h743Bench;
 use rigless::session::Session;
 use rigless::soc::Width;
 use rigless::time::VirtualNanos;
+use shared::control::PathEnd;
 
 use crate::Error;
 use crate::image::{Image, Instruction, MAILBOX};
 use crate::line::{Shared, Talker, lock};
-use crate::mounting::{BUTTON, drive};
-use crate::pins::Pins;
+use crate::machine::Machine;
+use crate::machine::step_drivers::StepDrivers;
+use crate::machine::wiring::Fault;
 
 /// How often the run is looked at from outside, in virtual nanoseconds.
 const LOOK: u64 = 1_000_000;
@@ -26,16 +28,6 @@ const PAINT_EVERY: u32 = 128;
 
 /// How many instants of the handler's entry are kept.
 const KEPT_ENTRIES: usize = 4_096;
-
-/// The first control register of TIM8, whose update plays a word; RM0433 rev 9 section 2.3.
-const SLOT_TIMER: u64 = 0x4001_0400;
-
-/// TIM15's break and dead-time register, and the bit that gives the drives power.
-const ENABLES: u64 = 0x4001_4044;
-const ON: u64 = 1 << 15;
-
-/// Where in the mailbox the axes' commands are.
-const TOLD: u64 = 10;
 
 const PAINT: u64 = 0xa5a5_5a5a;
 
@@ -52,6 +44,8 @@ pub struct Tick {
     pub instructions: u32,
     /// Pieces of the job that were entered so far.
     pub pieces: u32,
+    /// What each axis was told: a servo's command in mm/s as the bits of an f32, or a position in steps.
+    pub outputs: [u32; 3],
 }
 
 /// Everything that was seen.
@@ -61,6 +55,8 @@ pub struct Seen {
     pub ticks: Vec<Tick>,
     /// Every interrupt since the start, the job's or not.
     pub interrupts: u32,
+    /// How many of them came before the job's first tick; the last of these took the job's start.
+    pub idle: u32,
     /// The most instructions of any of them.
     pub worst: u32,
     /// The most stack that any of them used, without [`EXCEPTION_FRAME`].
@@ -73,14 +69,27 @@ pub struct Seen {
     pub counted_ticks: u32,
     /// Instructions of the interrupts before the first job's first tick.
     pub resting: Vec<u32>,
-    /// What the step drives saw, where they were looked at.
-    pub pins: Pins,
-    /// When the stop input was pressed, in ns.
-    pub pressed: Option<u64>,
-    /// When the drives' enable output was last switched off by the program, in ns.
-    pub disabled: Option<u64>,
     /// Any setpoint, at any time, that was not at rest at the origin.
     pub moved: bool,
+    /// Every change of the machine's status, and in which interrupt, counted from 0, the end of which is the instant in ns.
+    pub statuses: Vec<(u32, u64, Status)>,
+    /// Where the axes shall be and are, in machine coordinates, after the last interrupt.
+    pub position: [[i32; 3]; 2],
+    /// The axes whose position is known then; bit k is axis k.
+    pub known: u8,
+    /// When the controller was started again, in ns, and by what.
+    pub restarts: Vec<(u64, String)>,
+}
+
+/// What the mailbox says of the machine as a whole.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Status {
+    /// The number of `shared::safety::State`.
+    pub machine: u32,
+    /// What became of the path.
+    pub path: PathEnd,
+    /// What is wrong.
+    pub fault: Option<shared::safety::Fault>,
 }
 
 /// Words of the mailbox that are of interest here, in its order.
@@ -89,6 +98,8 @@ struct Mail {
     ticks: u32,
     pieces: u32,
     setpoint: [i32; 3],
+    outputs: [u32; 3],
+    status: Status,
 }
 
 /// The driver of a run.
@@ -108,19 +119,23 @@ pub struct Probe {
     /// What ran since, of what is counted.
     ran: Vec<u32>,
     last_ticks: u32,
-    /// Whether the pins are looked at, slot by slot.
-    looks: bool,
-    /// When the button is pressed, in ns after the job's first tick.
-    press_after: Option<u64>,
-    /// When it is pressed, in ns.
-    press_at: Option<u64>,
+    /// What happens so many ns after the job's first tick.
+    after: Vec<(u64, Fault)>,
+    /// When the run ends, in ns after the job's first tick.
+    end_after: Option<u64>,
+    /// When the reset pin is pulled, in ns.
+    restart_at: Option<u64>,
+    /// The instant of what is looked at, in ns.
+    at: u64,
+    /// What hangs on the board's pins.
+    pub machine: Machine,
     /// What was seen.
     pub seen: Seen,
 }
 
 impl Probe {
     /// A probe of `image` that ends the run when `talker` is done, or after `seconds` of virtual time.
-    pub fn new(image: &Image, talker: Shared<dyn Talker>, seconds: f64) -> Result<Self, Error> {
+    pub fn new(image: &Image, machine: Machine, talker: Shared<dyn Talker>, seconds: f64) -> Result<Self, Error> {
         let handler = image.tick_handler()?;
         let ends = image.instructions(handler).into_iter().filter(Instruction::is_return);
         Ok(Self {
@@ -136,9 +151,11 @@ impl Probe {
             stack_pointer: None,
             ran: Vec::new(),
             last_ticks: 0,
-            looks: false,
-            press_after: None,
-            press_at: None,
+            after: Vec::new(),
+            end_after: None,
+            machine,
+            restart_at: None,
+            at: 0,
             seen: Seen::default(),
         })
     }
@@ -149,14 +166,25 @@ impl Probe {
         self.count_range = range;
     }
 
-    /// Looks at the pins of step drives in every slot. The run is slow then.
+    /// Looks at the pins of step drivers in every slot. The run is slow then.
     pub fn look_at_pins(&mut self) {
-        self.looks = true;
+        self.machine.step_drivers = Some(StepDrivers::default());
     }
 
-    /// Presses the button so many nanoseconds after the job's first tick, and holds it.
-    pub fn press_stop_after(&mut self, nanoseconds: u64) {
-        self.press_after = Some(nanoseconds);
+    /// Lets `fault` begin so many nanoseconds after the job's first tick, and holds it. [`Machine::switches`] takes instants since
+    /// power-up.
+    pub fn inject_after(&mut self, nanoseconds: u64, fault: Fault) {
+        self.after.push((nanoseconds, fault));
+    }
+
+    /// Pulls the reset pin at the instant `at`, in ns since power-up.
+    pub fn restart_at(&mut self, at: u64) {
+        self.restart_at = Some(at);
+    }
+
+    /// Ends the run so many nanoseconds after the job's first tick.
+    pub fn end_after(&mut self, nanoseconds: u64) {
+        self.end_after = Some(nanoseconds);
     }
 
     /// Asks the session to stop where this probe wants to look, and to come back in time.
@@ -194,9 +222,16 @@ impl Probe {
         self.measure_stack(host);
         let Some(mail) = self.read_mail(host) else { return };
         self.seen.moved |= mail.setpoint != [0; 3];
+        if self.seen.statuses.last().is_none_or(|(_, _, before)| *before != mail.status) {
+            self.seen.statuses.push((self.seen.interrupts - 1, self.at, mail.status));
+        }
         // A new job starts to count from 1 again; between jobs the count stands.
         if mail.ticks != self.last_ticks && mail.ticks > 0 {
-            let tick = Tick { setpoint: mail.setpoint, instructions, pieces: mail.pieces };
+            let Mail { setpoint, pieces, outputs, .. } = mail;
+            let tick = Tick { setpoint, instructions, pieces, outputs };
+            if self.seen.ticks.is_empty() {
+                self.seen.idle = self.seen.interrupts - 1;
+            }
             if self.count_range.contains(&(self.seen.ticks.len() as u32)) {
                 self.seen.counted_ticks += 1;
                 for address in &self.ran {
@@ -236,10 +271,23 @@ impl Probe {
         (bottom.min(top)..top).step_by(4).map(u64::from)
     }
 
-    fn read_mail(&self, host: &mut dyn Host) -> Option<Mail> {
+    /// The mailbox, word by word in the order of `firmware/src/mailbox.rs`.
+    fn read_mail(&mut self, host: &mut dyn Host) -> Option<Mail> {
         let mut word = |index: u64| host.read(self.mailbox + 4 * index, Width::W32).ok().map(|word| word as u32);
-        // uptime, state, ticks, pieces, setpoint, ..
-        Some(Mail { ticks: word(2)?, pieces: word(3)?, setpoint: [word(4)? as i32, word(5)? as i32, word(6)? as i32] })
+        let mut three = |from: u64| Some([word(from)?, word(from + 1)?, word(from + 2)?]);
+        let signed = |words: [u32; 3]| words.map(|word| word as i32);
+        let (setpoint, outputs) = (signed(three(4)?), three(10)?);
+        let (position, actual) = (signed(three(19)?), signed(three(22)?));
+        let status = Status {
+            machine: word(15)?,
+            path: PathEnd::from_word(word(16)?),
+            fault: shared::safety::Fault::from_word(word(17)?),
+        };
+        let known = word(18)? as u8;
+        let (ticks, pieces) = (word(2)?, word(3)?);
+        self.seen.position = [position, actual];
+        self.seen.known = known;
+        Some(Mail { ticks, pieces, setpoint, outputs, status })
     }
 }
 
@@ -247,38 +295,41 @@ impl Driver<Stm32h743Bench> for Probe {
     fn on_settled(&mut self, session: &mut Session<Stm32h743Bench>, host: &mut dyn Host, settled: Settled) {
         match settled {
             Settled::Hit(hit) => {
+                self.at = hit.at.0;
                 self.hit(host, hit.address as u32, hit);
-                if let Some(after) = self.press_after
-                    && !self.seen.ticks.is_empty()
-                {
-                    self.press_after = None;
-                    self.press_at = Some(hit.at.0 + after);
+                if !self.seen.ticks.is_empty() {
+                    for (after, fault) in self.after.drain(..) {
+                        self.machine.switches.inject(hit.at.0 + after, fault);
+                    }
+                    if let Some(after) = self.end_after.take() {
+                        self.deadline = self.deadline.min(VirtualNanos(hit.at.0 + after));
+                    }
                 }
             }
-            Settled::Access { access, .. } if access.kind == AccessKind::Write => {
-                if access.address == SLOT_TIMER && access.value & 1 != 0 && self.looks {
-                    let first = self.seen.pins.start(access.virtual_time);
-                    session.run_until(first);
-                }
-                if access.address == ENABLES && access.value & ON == 0 {
-                    self.seen.disabled = Some(access.virtual_time.0);
-                }
-            }
-            _ => {}
+            Settled::Access { access, value } => self.machine.see(session.board_mut(), &access, value),
+            _ => return,
+        }
+        if let Some(next) = self.machine.next()
+            && next < session.until().0
+        {
+            session.run_until(VirtualNanos(next));
         }
     }
 
-    fn on_stop(&mut self, session: &mut Session<Stm32h743Bench>, stop: Stop, _: &mut dyn Host) -> Option<VirtualNanos> {
-        if self.press_at.is_some_and(|at| stop.at.0 >= at) {
-            self.press_at = None;
-            self.seen.pressed = Some(stop.at.0);
-            drive(session.board_mut(), stop.at, BUTTON, true);
+    fn on_stop(
+        &mut self,
+        session: &mut Session<Stm32h743Bench>,
+        stop: Stop,
+        host: &mut dyn Host,
+    ) -> Option<VirtualNanos> {
+        self.machine.act(session.board_mut(), stop.at);
+        if self.restart_at.is_some_and(|at| at <= stop.at.0) {
+            self.restart_at = None;
+            session.reset_by_pin(stop.at, stop.instruction_count, host);
         }
-        let look = if self.looks { self.seen.pins.look(session.board_mut(), stop.at) } else { None };
         let is_over = stop.at >= self.deadline || lock(&*self.talker).is_done();
-        let next = [look, self.press_at.map(VirtualNanos)].into_iter().flatten().min();
-        let next = next.map_or(stop.at.0 + LOOK, |next| next.0.min(stop.at.0 + LOOK));
-        (!is_over).then_some(VirtualNanos(next))
+        let look = stop.at.0 + LOOK;
+        (!is_over).then(|| VirtualNanos(self.machine.next().map_or(look, |next| next.min(look))))
     }
 }
 

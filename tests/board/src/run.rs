@@ -2,7 +2,9 @@
 
 use std::path::Path;
 
-use rigless::emulator::{Start, run as emulate};
+use rigless::chip::uart::Peer;
+use rigless::device::ResetCause;
+use rigless::emulator::{Driver, Start, run as emulate};
 use rigless::image::Image as Placed;
 use rigless::machine::stm32h743_bench::Stm32h743Bench;
 use rigless::session::Session;
@@ -13,7 +15,7 @@ use shared::piece::{Header, Piece};
 use crate::Error;
 use crate::image::{Image, PENDING};
 use crate::line::{JobTalker, Line, Shared, Talker, lock, share};
-use crate::mounting::Mounting;
+use crate::machine::{Machine, Mounting};
 use crate::probe::{Probe, Seen, Tick};
 
 /// The port that the firmware's link uses: the ST-Link's.
@@ -30,10 +32,11 @@ const IMAGE_MARK: u32 = 0x4d41_4348;
 const PATIENCE_S: f64 = 30.0;
 
 /// A job's run.
-#[derive(Clone, Debug)]
 pub struct JobRun {
     /// What was seen.
     pub seen: Seen,
+    /// The machine as the run left it.
+    pub machine: Machine,
     /// What the controller reported at the end: ticks, residual time in s, hash of the setpoints.
     pub finished: (u32, f32, u64),
     /// Commands that had to be sent again.
@@ -51,38 +54,61 @@ pub fn run(
     talker: Shared<dyn Talker>,
     seconds: f64,
     prepare: impl FnOnce(&mut Probe),
-) -> Result<Seen, Error> {
-    let failed = |error: &dyn std::fmt::Display| Error::new(format!("the virtual board: {error}"));
+) -> Result<(Seen, Machine), Error> {
+    let machine = mounting.machine()?;
+    let mut session = board(Line::new(talker.clone()), &machine)?;
+    let mut probe = Probe::new(image, machine, talker, seconds)?;
+    prepare(&mut probe);
+    probe.watch(&mut session);
+    let (Probe { mut seen, machine, .. }, restarts) = execute(image, mounting, session, probe)?;
+    seen.restarts = restarts;
+    Ok((seen, machine))
+}
+
+/// A board in a machine, with `peer` at the far end of its line, before its first instruction.
+pub(crate) fn board(peer: impl Peer, machine: &Machine) -> Result<Session<Stm32h743Bench>, Error> {
     let mut bench = Stm32h743Bench::new().map_err(|error| failed(&error))?;
     let nth = usart::INSTANCES.iter().position(|&name| name == PORT);
     let nth = nth.ok_or_else(|| Error::new(format!("the virtual board has no {PORT}")))?;
-    bench.mcu.usart[nth].attach(Line::new(talker.clone()));
+    bench.mcu.usart[nth].attach(peer);
+    machine.switches.power_up(&mut bench);
+    Session::new(Box::new(bench), 0, VirtualNanos(0)).map_err(|error| failed(&error))
+}
 
-    let mut session = Session::new(Box::new(bench), 0, VirtualNanos(0)).map_err(|error| failed(&error))?;
-    mounting.power_up(session.board_mut());
-    let mut probe = Probe::new(image, talker, seconds)?;
-    prepare(&mut probe);
-    probe.watch(&mut session);
+/// Runs `image` until `driver` ends the run, and gives the driver back, with the restarts that somebody has asked for: the program, or the
+/// reset pin. Errors: what the firmware did that it must not.
+pub(crate) fn execute<R: Driver<Stm32h743Bench> + 'static>(
+    image: &Image,
+    mounting: &Mounting,
+    session: Session<Stm32h743Bench>,
+    driver: R,
+) -> Result<(R, Vec<(u64, String)>), Error> {
     let place = |name: &str, bytes: Vec<u8>, at: u32| {
         Placed::new(Path::new(name), bytes, Some(at.into())).map_err(|error| failed(&error))
     };
     let mut images = vec![Placed::read(image.path(), None).map_err(|error| failed(&error))?];
     images.push(place("factory", FLASH_KIB.to_le_bytes().to_vec(), FLASH_SIZE)?);
-    if !mounting.machine.is_empty() {
+    if !mounting.image.is_empty() {
         let words = [IMAGE_MARK, 0].iter().flat_map(|word| word.to_le_bytes());
-        images.push(place("machine", words.chain(mounting.machine.iter().copied()).collect(), image.symbol(PENDING)?)?);
+        images.push(place("machine", words.chain(mounting.image.iter().copied()).collect(), image.symbol(PENDING)?)?);
     }
-    let mut finished = emulate(session, &Start::new(&images), probe).map_err(|error| failed(&error))?;
+    let mut finished = emulate(session, &Start::new(&images), driver).map_err(|error| failed(&error))?;
     if let Some(error) = finished.session.take_error() {
         return Err(failed(&error));
     }
     if let Some(first) = finished.session.unmapped().first() {
         return Err(Error::new(format!("the firmware left its memory: {first}")));
     }
-    if let Some(reset) = finished.session.resets().first() {
+    let resets = finished.session.resets();
+    if let Some(reset) = resets.iter().find(|reset| !matches!(reset.cause, ResetCause::Core | ResetCause::Pin)) {
         return Err(Error::new(format!("the controller was reset at {} ns by {:?}", reset.at.0, reset.cause)));
     }
-    Ok(finished.driver.seen)
+    let restarts = resets.iter().map(|reset| (reset.at.0, format!("{:?}", reset.cause))).collect();
+    Ok((finished.driver, restarts))
+}
+
+fn failed(error: &dyn std::fmt::Display) -> Error {
+    Error::new(format!("the virtual board: {error}"))
 }
 
 /// Sends a job to `image` in its `mounting` and waits for its end. `seconds` is how long it should take.
@@ -95,8 +121,11 @@ pub fn run_job(
     prepare: impl FnOnce(&mut Probe),
 ) -> Result<JobRun, Error> {
     let talker = share(JobTalker::new(header, pieces));
-    let seen = run(image, mounting, talker.clone(), seconds + PATIENCE_S, prepare)?;
+    let (seen, machine) = run(image, mounting, talker.clone(), seconds + PATIENCE_S, prepare)?;
     let talker = lock(&talker);
+    if let Some((at, cause)) = seen.restarts.first() {
+        return Err(Error::new(format!("the controller was reset at {at} ns by {cause}")));
+    }
     if let Some(error) = talker.error() {
         return Err(Error::new(error.to_string()));
     }
@@ -107,7 +136,7 @@ pub fn run_job(
         return Err(Error::new(format!("the job did not end within {:.0} s of virtual time", seconds + PATIENCE_S)));
     };
     let stack = talker.telemetry.map_or(0, |telemetry| telemetry.stack);
-    Ok(JobRun { seen, finished, resent: talker.resent(), stack })
+    Ok(JobRun { seen, machine, finished, resent: talker.resent(), stack })
 }
 
 /// The setpoints of a run, as `--setpoints` of both commands writes them.

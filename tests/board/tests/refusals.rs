@@ -14,6 +14,7 @@ use shared::feed::Ramp;
 use shared::fixed::Fixed;
 use shared::link::{Command, FRAME_SIZE, FrameError, LinkError, NO_SESSION, Refusal, Report, VERSION, encode};
 use shared::piece::{Header, Order, Piece, Shape};
+use shared::safety::Coordinates;
 
 /// Long enough for the answer to come back and for many ticks to show what they do.
 const GAP_US: u64 = 20_000;
@@ -21,7 +22,7 @@ const GAP_US: u64 = 20_000;
 /// Says `lines` to the controller and returns what it answered and what it did.
 fn say(image: &Image, lines: Vec<Vec<u8>>) -> (Vec<Report>, Seen) {
     let script = share(Script::new(lines, GAP_US));
-    let seen = run(image, &servos(), script.clone(), 5.0, |_| {}).unwrap();
+    let (seen, _) = run(image, &servos(), script.clone(), 5.0, |_| {}).unwrap();
     let reports = lock(&script).reports.clone();
     (reports, seen)
 }
@@ -46,7 +47,7 @@ fn refusals(reports: &[Report]) -> Vec<Refusal> {
 
 /// Loads a job as a sender that does not look at the answers, starts it, and returns the first refusal. Nothing may have moved.
 fn refusal_of(image: &Image, header: Header<f32>, pieces: &[Piece<f32>]) -> Refusal {
-    let mut commands = vec![Command::Begin(header)];
+    let mut commands = vec![Command::Begin(header, Coordinates::Relative)];
     commands.extend(pieces.iter().copied().map(Command::Piece));
     commands.push(Command::Run);
     let mut lines = vec![hello()];
@@ -72,7 +73,7 @@ fn changed(kind: Kind, change: impl FnOnce(&mut Piece<f32>)) -> (Header<f32>, Ve
 #[test]
 fn a_good_job_moves() {
     let (header, pieces) = good(Kind::Line);
-    let mut lines = vec![hello(), frame(1, &Command::Begin(header))];
+    let mut lines = vec![hello(), frame(1, &Command::Begin(header, Coordinates::Relative))];
     lines.extend(pieces.iter().zip(2..).map(|(piece, sequence)| frame(sequence, &Command::Piece(*piece))));
     lines.push(frame(4, &Command::Run));
     let (reports, seen) = say(&image(), lines);
@@ -148,7 +149,7 @@ fn faulty_pieces_are_refused() {
 fn faulty_frames_are_refused_and_forgotten() {
     let image = image();
     let (header, _) = good(Kind::Line);
-    let begin = frame(1, &Command::Begin(header));
+    let begin = frame(1, &Command::Begin(header, Coordinates::Relative));
     let mut corrupted = begin.clone();
     corrupted[3] ^= 0x40;
     let mut truncated = begin[..begin.len() - 6].to_vec();
@@ -194,7 +195,8 @@ fn a_start_without_a_job_and_another_version_are_refused() {
 fn a_repeated_piece_is_acknowledged_and_not_queued() {
     let (header, pieces) = good(Kind::Line);
     let piece = frame(2, &Command::Piece(pieces[0]));
-    let (reports, _) = say(&image(), vec![hello(), frame(1, &Command::Begin(header)), piece.clone(), piece]);
+    let (reports, _) =
+        say(&image(), vec![hello(), frame(1, &Command::Begin(header, Coordinates::Relative)), piece.clone(), piece]);
     let rooms: Vec<u16> = reports
         .iter()
         .filter_map(|report| match report {

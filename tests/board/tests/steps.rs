@@ -2,12 +2,12 @@
 
 mod common;
 
-use board::jobs::diagonal;
-use board::pins::{SLOTS, Step};
+use board::jobs::{all_ways, diagonal};
+use board::machine::step_drivers::{ROUTER, SLOTS, Step, StepDrivers};
 use board::run::run_job;
-use common::{image, machine, steps};
+use common::{image, machine, start_of, steps};
 use shared::control::{StepPins, step_settings};
-use shared::fixed::Fixed;
+use shared::fixed::{Fixed, UNITS_PER_MM};
 use shared::piece::{Header, Piece};
 use shared::steps::decoder::Decoder;
 use shared::steps::{Half, StepSettings};
@@ -16,7 +16,7 @@ use shared::steps::{Half, StepSettings};
 fn settings() -> [StepSettings; 3] {
     let pins =
         [[3, 4], [5, 6], [7, 0]].map(|[step, direction]| StepPins { step: (0, step), direction: (0, direction) });
-    step_settings(&machine("mill-steps.toml"), &pins, SLOTS as usize)
+    step_settings(&machine("mill-steps.toml").axes, &pins, SLOTS as usize)
 }
 
 /// The words of these setpoints, from a rest at the first one's job start, decoded.
@@ -35,20 +35,20 @@ fn host(start: [Fixed; 3], setpoints: &[[i32; 3]]) -> Vec<Step> {
     steps
 }
 
-fn compare((header, pieces): (Header<f32>, Vec<Piece<f32>>), ticks: usize) {
-    let [x, y] = pieces[0].origin;
-    let run = run_job(&image(), &steps(), header, pieces.clone(), 1.0, |probe| probe.look_at_pins()).unwrap();
-    let setpoints: Vec<_> = run.seen.ticks.iter().map(|tick| tick.setpoint).collect();
-    assert!(setpoints.len() > ticks, "{}", setpoints.len());
+/// Runs a job on the board and compares every pulse. Returns the drivers.
+fn compare((header, pieces): (Header<f32>, Vec<Piece<f32>>), ticks: usize) -> StepDrivers {
+    let run = run_job(&image(), &steps(), header, pieces.clone(), 1.0, |probe| {
+        probe.machine.step_drivers = Some(StepDrivers::with_motors(ROUTER).unwrap());
+    })
+    .unwrap();
     // The machine stands at 0 after its start, and the path begins there, whatever its own coordinates are.
-    let start = shared::loader::Loader::new(&header, shared::TICK).and_then(|mut loader| {
-        loader.load(&pieces[0])?;
-        Ok(loader.start())
-    });
-    let [first_x, first_y] = start.unwrap().unwrap_or([x, y]);
-    let setpoints: Vec<_> = setpoints.iter().map(|[x, y, z]| [x - first_x.0, y - first_y.0, *z]).collect();
+    let start = start_of(&header, &pieces);
+    let moved = |setpoint: [i32; 3]| [0, 1, 2].map(|axis| setpoint[axis] - start[axis].0);
+    let setpoints: Vec<_> = run.seen.ticks.iter().map(|tick| moved(tick.setpoint)).collect();
+    assert!(setpoints.len() > ticks, "{}", setpoints.len());
     let host = host([Fixed(0); 3], &setpoints);
-    let pins = &run.seen.pins.steps;
+    let drivers = run.machine.step_drivers.unwrap();
+    let pins = &drivers.steps;
     assert!(host.len() > ticks && !pins.is_empty(), "{} {}", host.len(), pins.len());
     // One shift for all of them, of whole ticks: when the job was started.
     let shift = pins[0].1 - host[0].1;
@@ -57,42 +57,53 @@ fn compare((header, pieces): (Header<f32>, Vec<Piece<f32>>), ticks: usize) {
     assert_eq!(differs, None, "the first step that differs");
     // The last tick's words may still be on their way when the host hears that the job has ended.
     assert_eq!(host.len(), pins.len());
-    for axis in 0..3 {
-        let least = run.seen.pins.least(axis);
-        assert!(least.pulse >= 1 && least.gap >= 1 && least.setup >= 10 && least.hold >= 10, "{axis}: {least:?}");
+    for (axis, driver) in drivers.drivers.iter().enumerate() {
+        assert_eq!(driver.violations(), [""; 0], "axis {axis}: {:?}", driver.least());
+        // A pulse has two edges.
+        let count = pins.iter().filter(|&&(of, ..)| of == axis).count();
+        assert_eq!(driver.edges[0], 2 * count as u64);
+        // The steps lead from the step at the start to the one next to the end.
+        let last = setpoints.last().unwrap()[axis];
+        let nearest = (f64::from(last) / UNITS_PER_MM * 8_000.0 + 0.5).floor() as i64;
+        assert_eq!(driver.position(), nearest, "axis {axis}");
     }
+    drivers
 }
 
 /// All axes near 900 000 steps/s, for a quarter of a second: the pins, the words and the drives' times.
 #[test]
 fn pulses_at_full_speed_are_the_simulators() {
-    compare(diagonal(900_000.0), 200);
+    let mut drivers = compare(diagonal(900_000.0), 200);
+    // Every pulse is right, and no motor can follow: from rest to 112 mm/s at once is beyond any of this size, so each loses steps.
+    for axis in 0..3 {
+        assert!(drivers.reading(axis).unwrap().lost_steps.abs() >= 4, "axis {axis}");
+    }
 }
 
 /// And slowly, where pulses are far apart.
 #[test]
 fn slow_pulses_are_the_simulators() {
-    compare(diagonal(20_000.0), 200);
+    let mut drivers = compare(diagonal(20_000.0), 200);
+    // 2.5 mm/s at once is nothing to a motor: its table is within a full step of what the pulses say, 1/40 mm.
+    for axis in 0..3 {
+        let reading = drivers.reading(axis).unwrap();
+        let asked = drivers.drivers[axis].position() as f64 / 8_000.0;
+        assert_eq!(reading.lost_steps, 0, "axis {axis}");
+        assert!((reading.position - asked).abs() < 0.025, "axis {axis}: {} of {asked} mm", reading.position);
+    }
 }
 
-/// The stop input in the middle of a job, at instants that fall anywhere in a tick: the enable output is off and the last edge is past
-/// within a tick; it is a few instructions in fact.
+/// A whole job with reversals: every axis turns around, slowly and at once, in all pairs of directions.
 #[test]
-fn a_stop_ends_the_pulses_within_a_tick() {
-    for after in [3_141_592, 10_000_001, 27_182_818, 40_499_999] {
-        let (header, pieces) = diagonal(900_000.0);
-        let mut seen = None;
-        let talker = board::line::share(board::line::JobTalker::new(header, pieces));
-        let run = board::run::run(&image(), &steps(), talker, 0.12, |probe| {
-            probe.look_at_pins();
-            probe.press_stop_after(after);
-        });
-        let seen = seen.insert(run.unwrap());
-        let (pressed, disabled) = (seen.pressed.unwrap(), seen.disabled.unwrap());
-        assert!((pressed..pressed + 2_000).contains(&disabled), "{after}: off {} ns later", disabled - pressed);
-        let &(off, false) = seen.pins.enabled.last().unwrap() else { panic!("{after}: still enabled") };
-        let &(_, last, _) = seen.pins.steps.last().unwrap();
-        assert!(last <= off && off - last <= SLOTS, "{after}: off in slot {off}, last step in {last}");
-        assert!(seen.pins.steps.len() > 1_000, "{after}: in motion before");
+fn a_job_in_all_directions_is_the_simulators() {
+    let drivers = compare(all_ways(), 700);
+    let both = |axis: usize| {
+        [true, false].map(|way| drivers.steps.iter().filter(|step| (step.0, step.2) == (axis, way)).count())
+    };
+    for axis in 0..2 {
+        let [forward, backward] = both(axis);
+        assert!(forward > 10_000 && backward > 10_000, "axis {axis}: {forward} and {backward} steps");
+        assert!(drivers.drivers[axis].edges[1] >= 4, "axis {axis} turned around");
     }
+    assert_eq!(both(2), [0, 0]);
 }
