@@ -4,7 +4,7 @@ use embedded_storage::nor_flash::NorFlash;
 use sequential_storage::cache::Cache;
 use sequential_storage::map::{MapConfig, MapStorage};
 use shared::control::Axes;
-use shared::machine::image::{IMAGE_SIZE, Image, decode};
+use shared::machine::image::{IMAGE_SIZE, Image, decode, whole};
 use shared::machine::{Axis, Drive, Machine};
 
 use crate::hardware::{AXES, Blocking, KEPT_RANGE, PINS, PORTS, SLOTS};
@@ -41,6 +41,9 @@ pub fn machine(flash: impl NorFlash, image: &mut Image) -> Machine {
     if restart::take_image(image)
         && let Some(machine) = machine_of(image)
     {
+        // The memory behind it is not part of it: a host would read back more than it has written.
+        let length = whole(image).map_or(0, <[u8]>::len);
+        image.truncate(length);
         let kept = embassy_futures::block_on(map.store_item(&mut buffer, &KEY, &image.as_slice()));
         if kept.is_err() {
             defmt::error!("the flash did not take the machine");

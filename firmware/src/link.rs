@@ -119,12 +119,17 @@ impl Queues {
         Ok(Answer::Done)
     }
 
+    /// A part of the image that is kept, or about to be: a host that has written one reads it back at once.
     fn image_part(&self, offset: u16) -> Answer {
-        let rest = self.image.get(usize::from(offset)..).unwrap_or_default();
+        let image = match self.leaving {
+            Some((length, _)) => self.draft.get(..length).unwrap_or_default(),
+            None => self.image.as_slice(),
+        };
+        let rest = image.get(usize::from(offset)..).unwrap_or_default();
         let part = rest.get(..shared::link::action::CHUNK_SIZE).unwrap_or(rest);
         // An image is shorter than 64 KiB.
-        let length = self.image.len() as u16;
-        Answer::Image { length, crc: checksum(self.image), offset, chunk: Chunk::new(part).unwrap_or_default() }
+        let length = image.len() as u16;
+        Answer::Image { length, crc: checksum(image), offset, chunk: Chunk::new(part).unwrap_or_default() }
     }
 
     /// Restarts with a machine that was sent, once its answer has left. Not while anything moves: a job may have begun meanwhile.

@@ -309,3 +309,22 @@ fn an_axis_that_cannot_keep_up_is_a_fault() {
         assert_eq!(bench.status.path, end, "{feed} mm/s");
     }
 }
+
+/// The button's interrupt stops the pulses by itself, so the next tick finds the ring not played on: that is a stop and no fault.
+#[test]
+fn a_ring_that_a_stop_has_stopped_is_not_late() {
+    let settings = settings(ROUTER);
+    for ticks in [3, 50, 200] {
+        let (mut bench, start) = ready(&settings);
+        ask(&mut bench, Directive::Start(start)).unwrap();
+        for _ in 0..ticks {
+            bench.tick();
+        }
+        bench.stopped = true;
+        bench.be_late(true);
+        let outputs = bench.tick();
+        assert!(!outputs.drives);
+        let status = bench.status;
+        assert_eq!((status.machine, status.fault, status.path), (State::EStop, None, PathEnd::Stopped));
+    }
+}

@@ -134,7 +134,8 @@ impl<const AXES: usize, const PORTS: usize, const SLOTS: usize> Control<AXES, PO
         let sensed = self.axes.sense(inputs.counts);
         let half = if ring.is_played() { ring.next_half().map(Some) } else { Ok(None) };
 
-        let (event, directive) = self.event(sensed, half.is_err(), next);
+        // A stop's interrupt has stopped the ring already: that it was not filled since is the stop's doing.
+        let (event, directive) = self.event(sensed, half.is_err() && !levels.estop, next);
         let away = directive.as_ref().and_then(|directive| self.away(directive));
         let event = if away.is_some() { None } else { event };
         let allowed = self.safety.step(&self.config, levels, event);

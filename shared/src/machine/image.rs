@@ -106,6 +106,14 @@ pub fn decode(bytes: &[u8]) -> Result<MachineSettings, ImageError> {
     }
 }
 
+/// The bytes of `bytes` that are the image at their start, by its own word; none where there is no mark, or less than it says.
+pub fn whole(bytes: &[u8]) -> Option<&[u8]> {
+    let (head, _) = bytes.split_first_chunk::<HEAD_SIZE>()?;
+    let [m0, m1, m2, m3, _, _, l0, l1, ..] = *head;
+    let length = HEAD_SIZE + usize::from(u16::from_le_bytes([l0, l1]));
+    bytes.get(..length).filter(|_| [m0, m1, m2, m3] == MARK)
+}
+
 fn checksum(said: [u8; 4], body: &[u8]) -> u32 {
     let mut digest = CRC.digest();
     digest.update(&said);

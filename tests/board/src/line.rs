@@ -8,7 +8,9 @@ use rigless::chip::Timeline;
 use rigless::chip::uart::Peer;
 use rigless::snapshot::Store;
 use rigless::time::VirtualNanos;
-use shared::link::{Decoder, Ending, Event, Received, Report, Sender, SenderError, Telemetry};
+use shared::link::{
+    Action, Answer, Decoder, Ending, Event, Identity, Received, Refusal, Report, Sender, SenderError, Telemetry,
+};
 use shared::piece::{Header, Piece};
 use shared::safety::Coordinates;
 
@@ -171,5 +173,64 @@ impl Talker for Script {
 
     fn is_done(&self) -> bool {
         self.lines.is_empty() && self.now_us >= self.until_us
+    }
+}
+
+/// What came of an action.
+pub type Outcome = (Action, Result<Answer, Refusal>);
+
+/// Hosts that come one after another, each in a session of its own, and ask for actions one by one.
+pub struct Visitors {
+    /// Who is still to come: when, in microseconds, and what for.
+    waiting: VecDeque<(u64, Vec<Action>)>,
+    /// The session of the one who is there, and what is still to be asked for.
+    here: Option<(Sender<'static>, VecDeque<Action>)>,
+    until_us: u64,
+    now_us: u64,
+    /// What the controller said it is, and what came of each action, visit by visit.
+    pub visits: Vec<(Option<Identity>, Vec<Outcome>)>,
+    /// The last telemetry.
+    pub telemetry: Option<Telemetry>,
+}
+
+impl Visitors {
+    /// Visits at these instants, in microseconds, until the last of them.
+    pub fn new(visits: impl IntoIterator<Item = (u64, Vec<Action>)>, until_us: u64) -> Self {
+        let waiting = visits.into_iter().collect();
+        Self { waiting, here: None, until_us, now_us: 0, visits: Vec::new(), telemetry: None }
+    }
+}
+
+impl Talker for Visitors {
+    fn receive(&mut self, now_us: u64, byte: u8) {
+        self.now_us = now_us;
+        let event = self.here.as_mut().and_then(|(sender, _)| sender.receive(now_us, byte));
+        let Some((identity, outcomes)) = self.visits.last_mut() else { return };
+        match event {
+            Some(Event::Hello(found)) => *identity = Some(found),
+            Some(Event::Done(action, outcome)) => outcomes.push((action, outcome)),
+            Some(Event::Telemetry(telemetry)) => self.telemetry = Some(telemetry),
+            _ => {}
+        }
+    }
+
+    fn poll(&mut self, now_us: u64) -> Option<Vec<u8>> {
+        self.now_us = now_us;
+        if let Some((_, actions)) = self.waiting.pop_front_if(|(at, _)| *at <= now_us) {
+            let session = SESSION + self.visits.len() as u32;
+            self.here = Some((Sender::without_job(session), actions.into()));
+            self.visits.push((None, Vec::new()));
+        }
+        let (sender, actions) = self.here.as_mut()?;
+        while let Some(action) = actions.front()
+            && sender.act(*action)
+        {
+            actions.pop_front();
+        }
+        sender.poll(now_us).map(|frame| frame.to_vec())
+    }
+
+    fn is_done(&self) -> bool {
+        self.now_us >= self.until_us
     }
 }
