@@ -7,7 +7,7 @@ use shared::machine::Machine;
 use shared::safety::ResetCause;
 use shared::supply::Source;
 
-use crate::hardware::{AXES, Drives, Enables, Encoders, InputPins, PINS, PORTS, SLOTS, StepRing};
+use crate::hardware::{AXES, Cycles, Drives, Enables, Encoders, InputPins, PINS, PORTS, SLOTS, StepRing};
 use crate::mailbox::Mailbox;
 
 /// Length of the queue of pieces; it holds one less. A power of two.
@@ -62,16 +62,19 @@ impl Tick {
         Self { control, hands, pieces, directives, powered: false }
     }
 
-    /// One tick, from the levels at the pins to what the drives get.
+    /// One tick, from the levels at the pins to what the drives get. `cycles` began with it; returns what was past at the end of its first
+    /// two stages, reading and deciding.
     #[inline(always)]
-    pub fn tick(&mut self, mailbox: &Mailbox) {
+    pub fn tick(&mut self, mailbox: &Mailbox, cycles: Cycles) -> [u32; 2] {
         let Self { control, hands, pieces, directives, powered } = self;
         let inputs = Inputs {
             pins: hands.inputs.read(),
             stopped: hands.enables.take_stop() | mailbox.take_button(),
             counts: hands.encoders.read(),
         };
+        let sensed = cycles.elapsed();
         let outputs = control.tick(&inputs, || directives.dequeue(), pieces, &mut hands.ring);
+        let decided = cycles.elapsed();
         if outputs.drives != *powered {
             *powered = outputs.drives;
             // The button may have been pressed since; its interrupt comes after this store, or its power stays off.
@@ -82,5 +85,6 @@ impl Tick {
             mailbox.answer(&answer);
         }
         mailbox.publish(&control.status(&outputs));
+        [sensed, decided]
     }
 }

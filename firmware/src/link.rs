@@ -26,6 +26,9 @@ pub const TX_BYTES: usize = 1024;
 /// How long the answer to a new machine has to leave before the restart, in ticks.
 const PARTING_TICKS: u32 = 50;
 
+/// The cycles of the tick's stages are logged every so many ticks, while a host listens.
+const LOG_TICKS: u32 = 1024;
+
 /// See the module.
 pub struct Link {
     received: Consumer<'static, u8>,
@@ -56,6 +59,8 @@ struct Queues {
     leaving: Option<(usize, u32)>,
     lamp: Lamp,
     reporter: Reporter,
+    /// When the cycles of the tick's stages were logged last, in ticks.
+    logged: u32,
 }
 
 impl Link {
@@ -70,7 +75,7 @@ impl Link {
         let capacity = lines.pieces.room() as u16;
         let draft = [0; IMAGE_SIZE];
         let reporter = Reporter::default();
-        let queues = Queues { lines, capacity, machine, image, draft, leaving: None, lamp, reporter };
+        let queues = Queues { lines, capacity, machine, image, draft, leaving: None, lamp, reporter, logged: 0 };
         Self { received, endpoint: Endpoint::new(), queues }
     }
 
@@ -95,6 +100,16 @@ impl Queues {
                 return answer.map_err(Refusal::from);
             }
             cortex_m::asm::wfi();
+        }
+    }
+
+    /// Once a second, for whoever has a debug probe: `probe-rs attach` shows it.
+    fn log_stages(&mut self) {
+        let now = MAILBOX.uptime();
+        if now.wrapping_sub(self.logged) >= LOG_TICKS {
+            self.logged = now;
+            let [inputs, moving, outputs] = MAILBOX.stages();
+            defmt::info!("cycles at most: inputs {}, moving {}, outputs {}", inputs, moving, outputs);
         }
     }
 
@@ -198,6 +213,7 @@ impl Peer for Queues {
     }
 
     fn telemetry(&mut self, loading: bool) -> Telemetry {
+        self.log_stages();
         let status = MAILBOX.read();
         self.lamp.show(status.motion.is_moving() || status.machine == State::Homing);
         self.reporter.report(&status, self.machine.safety.axes, loading)

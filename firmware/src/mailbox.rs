@@ -56,6 +56,8 @@ pub struct Mailbox {
     actual: [AtomicI32; 3],
     /// What came of the last directive, `answer_word`, until the link has taken it; or 0.
     answer: AtomicU32,
+    /// The most cycles of each stage of a tick since the controller started: reading inputs, deciding and moving, putting out.
+    stages: [AtomicU32; 3],
     /// Whether the button was pressed since the last tick.
     button: AtomicBool,
     /// Whether it is pressed now.
@@ -82,6 +84,7 @@ impl Mailbox {
             position: [const { AtomicI32::new(0) }; 3],
             actual: [const { AtomicI32::new(0) }; 3],
             answer: AtomicU32::new(0),
+            stages: [const { AtomicU32::new(0) }; 3],
             button: AtomicBool::new(false),
             pressed: AtomicBool::new(false),
         }
@@ -109,9 +112,15 @@ impl Mailbox {
         write(&self.actual, status.actual);
     }
 
-    /// The end of a tick that took so many cycles.
+    /// The end of a tick that took so many cycles up to the end of each stage.
     #[inline(always)]
-    pub fn close(&self, cycles: u32) {
+    pub fn close(&self, [sensed, decided, cycles]: [u32; 3]) {
+        let stages = [sensed, decided.wrapping_sub(sensed), cycles.wrapping_sub(decided)];
+        for (most, stage) in self.stages.iter().zip(stages) {
+            if stage > most.load(Relaxed) {
+                most.store(stage, Relaxed);
+            }
+        }
         self.cycles.store(cycles, Relaxed);
         if cycles > self.worst_cycles.load(Relaxed) {
             self.worst_cycles.store(cycles, Relaxed);
@@ -127,6 +136,11 @@ impl Mailbox {
     /// The last tick and the longest since the controller started, in cycles of the core.
     pub fn cycles(&self) -> [u32; 2] {
         [self.cycles.load(Relaxed), self.worst_cycles.load(Relaxed)]
+    }
+
+    /// The most cycles of each stage of a tick since the controller started: reading inputs, deciding and moving, putting out.
+    pub fn stages(&self) -> [u32; 3] {
+        self.stages.each_ref().map(|most| most.load(Relaxed))
     }
 
     /// How the machine stood after the last tick, all of it of the same tick. For tasks below the tick.

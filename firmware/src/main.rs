@@ -139,9 +139,9 @@ mod app {
     fn tick(cx: tick::Context) {
         let cycles = Cycles::start();
         cx.local.timer.acknowledge();
-        cx.local.tick.tick(&MAILBOX);
+        let [sensed, decided] = cx.local.tick.tick(&MAILBOX, cycles);
         cx.local.watchdog.feed();
-        MAILBOX.close(cycles.elapsed());
+        MAILBOX.close([sensed, decided, cycles.elapsed()]);
     }
 
     /// The line of the NUCLEO-H743ZI2, see [`exchange`].
