@@ -186,7 +186,8 @@ impl Serve {
         // Whoever waits for this line waits for all of it.
         std::io::stdout().flush().map_err(refused)?;
         let pace = if self.fast { Pace::Fast } else { Pace::Real };
-        let Served { traffic, virtual_s, real_s } = serve(&image, &mounting(&self.machine)?, listener, pace, self.seconds, ended)?;
+        let Served { traffic, virtual_s, real_s } =
+            serve(&image, &mounting(&self.machine)?, listener, pace, self.seconds, ended)?;
         println!(
             "{} hosts, {} bytes from them and {} to them; {virtual_s:.3} s of the board in {real_s:.3} s",
             traffic.hosts, traffic.from_hosts, traffic.to_hosts

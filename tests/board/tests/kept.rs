@@ -44,11 +44,14 @@ fn a_machine_is_kept() {
     let machine = told.image.clone();
     let visits = [(15_000, write(&machine)), (300_000, read(machine.len())), (600_000, read(machine.len()))];
     let visitors = share(Visitors::new(visits, 800_000));
-    let (seen, pins) = run(&image(), &told.untold(), visitors.clone(), 1.0, |probe| probe.restart_at(500_000_000)).unwrap();
+    let (seen, pins) =
+        run(&image(), &told.untold(), visitors.clone(), 1.0, |probe| probe.restart_at(500_000_000)).unwrap();
     let causes: Vec<_> = seen.restarts.iter().map(|(_, cause)| cause.as_str()).collect();
     assert_eq!(causes, ["Core", "Pin"], "{:?}", seen.restarts);
     let visitors = lock(&visitors);
-    let [(before, written), (after, first), (again, second)] = &*visitors.visits else { panic!("{:?}", visitors.visits) };
+    let [(before, written), (after, first), (again, second)] = &*visitors.visits else {
+        panic!("{:?}", visitors.visits)
+    };
     assert!(written.iter().all(|(_, outcome)| *outcome == Ok(Answer::Done)), "{written:?}");
     assert_eq!(written.len(), machine.len().div_ceil(CHUNK_SIZE) + 1);
     assert_eq!([before, after, again].map(|identity| identity.unwrap().axes), [0, 2, 2]);

@@ -10,8 +10,8 @@ use std::time::Duration;
 use board::serve::{Pace, serve};
 use common::{image, root, servos};
 use host_sim::job::Job;
-use host_sim::path::Path;
 use host_sim::monitor::{Sight, Want, monitor};
+use host_sim::path::Path;
 use host_sim::stream::stream;
 use host_sim::{simulate, transport};
 use shared::link::MotionState;
@@ -27,7 +27,9 @@ fn a_job_over_tcp_is_the_simulators() {
     let board = {
         let (image, ended) = (image(), ended.clone());
         // Where something hangs, the board ends all the same.
-        std::thread::spawn(move || serve(&image, &servos(), listener, Pace::Fast, Some(Duration::from_secs(120)), ended))
+        std::thread::spawn(move || {
+            serve(&image, &servos(), listener, Pace::Fast, Some(Duration::from_secs(120)), ended)
+        })
     };
 
     let job = Job::read(root().join("examples/bracket.toml").to_str().unwrap()).unwrap();

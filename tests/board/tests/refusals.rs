@@ -195,7 +195,8 @@ fn a_start_without_a_job_and_another_version_are_refused() {
 fn a_repeated_piece_is_acknowledged_and_not_queued() {
     let (header, pieces) = good(Kind::Line);
     let piece = frame(2, &Command::Piece(pieces[0]));
-    let (reports, _) = say(&image(), vec![hello(), frame(1, &Command::Begin(header, Coordinates::Relative)), piece.clone(), piece]);
+    let (reports, _) =
+        say(&image(), vec![hello(), frame(1, &Command::Begin(header, Coordinates::Relative)), piece.clone(), piece]);
     let rooms: Vec<u16> = reports
         .iter()
         .filter_map(|report| match report {

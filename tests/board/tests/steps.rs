@@ -16,7 +16,7 @@ use shared::steps::{Half, StepSettings};
 fn settings() -> [StepSettings; 3] {
     let pins =
         [[3, 4], [5, 6], [7, 0]].map(|[step, direction]| StepPins { step: (0, step), direction: (0, direction) });
-    step_settings(&machine("mill-steps.toml"), &pins, SLOTS as usize)
+    step_settings(&machine("mill-steps.toml").axes, &pins, SLOTS as usize)
 }
 
 /// The words of these setpoints, from a rest at the first one's job start, decoded.

@@ -174,7 +174,8 @@ fn a_drives_fault_takes_a_tick() {
 /// A limit switch acts after its debounce of 5 ms, which is six ticks, and not before.
 #[test]
 fn a_limit_switch_acts_after_its_debounce() {
-    let ends = [(Cause::LowLimit(0), 0, End::Low), (Cause::HighLimit(1), 1, End::High), (Cause::LowLimit(2), 2, End::Low)];
+    let ends =
+        [(Cause::LowLimit(0), 0, End::Low), (Cause::HighLimit(1), 1, End::High), (Cause::LowLimit(2), 2, End::Low)];
     for (after, (cause, axis, end)) in random(2_000_000..30_000_000).zip(ends) {
         let stop = on_steps(after, cause, 9 * TICK);
         let off = stop.off_after();
