@@ -2,7 +2,7 @@
 
 use proptest::prelude::*;
 
-use super::image::{IMAGE_SIZE, ImageError, decode, encode};
+use super::image::{IMAGE_SIZE, ImageError, decode, encode, whole};
 use super::*;
 use crate::servo::{DriveSettings, ServoSettings};
 
@@ -118,6 +118,16 @@ fn what_will_not_do_is_refused_by_name() {
         }),
         MachineError::Servo { axis: 1, .. }
     ));
+}
+
+/// Memory behind an image is no part of it, and less than an image is none.
+#[test]
+fn an_image_knows_its_end() {
+    let image = encode(&machine()).unwrap();
+    let mut memory = image.to_vec();
+    memory.extend([0x5a; 100]);
+    assert_eq!(whole(&memory), Some(&*image));
+    assert_eq!((whole(&image[..image.len() - 1]), whole(&memory[1..])), (None, None));
 }
 
 #[test]
