@@ -114,10 +114,9 @@ impl Queues {
     }
 
     fn put_aside(&mut self, offset: u16, chunk: &Chunk) -> Result<Answer, Refusal> {
-        let bytes = chunk.bytes().ok_or(Refusal::Range)?;
-        let from = usize::from(offset);
-        let place = self.draft.get_mut(from..from + bytes.len()).ok_or(Refusal::Range)?;
-        place.copy_from_slice(bytes);
+        if !chunk.put_into(&mut self.draft, offset) {
+            return Err(Refusal::Range);
+        }
         Ok(Answer::Done)
     }
 
@@ -140,11 +139,7 @@ impl Queues {
             Some((length, _)) => self.draft.get(..length).unwrap_or_default(),
             None => self.image.as_slice(),
         };
-        let rest = image.get(usize::from(offset)..).unwrap_or_default();
-        let part = rest.get(..shared::link::action::CHUNK_SIZE).unwrap_or(rest);
-        // An image is shorter than 64 KiB.
-        let length = image.len() as u16;
-        Answer::Image { length, crc: checksum(image), offset, chunk: Chunk::new(part).unwrap_or_default() }
+        Answer::part_of(image, offset)
     }
 
     /// Restarts with a machine that was sent, once its answer has left. Not while anything moves: a job may have begun meanwhile.

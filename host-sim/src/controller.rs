@@ -141,24 +141,11 @@ impl Virtual {
         Err(Refusal::Busy)
     }
 
-    fn image_part(&self, offset: u16) -> Answer {
-        let rest = self.image.get(usize::from(offset)..).unwrap_or_default();
-        let part = rest.get(..shared::link::action::CHUNK_SIZE).unwrap_or(rest);
-        Answer::Image {
-            // An image is committed up to `IMAGE_SIZE` only.
-            length: self.image.len() as u16,
-            crc: checksum(&self.image),
-            offset,
-            chunk: Chunk::new(part).unwrap_or_default(),
-        }
-    }
-
     fn put_aside(&mut self, offset: u16, chunk: &Chunk) -> Result<Answer, Refusal> {
-        let bytes = chunk.bytes().ok_or(Refusal::Range)?;
         self.draft.resize(usize::from(IMAGE_SIZE), 0);
-        let from = usize::from(offset);
-        let place = self.draft.get_mut(from..from + bytes.len()).ok_or(Refusal::Range)?;
-        place.copy_from_slice(bytes);
+        if !chunk.put_into(&mut self.draft, offset) {
+            return Err(Refusal::Range);
+        }
         Ok(Answer::Done)
     }
 
@@ -239,7 +226,7 @@ impl Machine for Virtual {
         match action {
             Action::WriteImage { offset, chunk } => self.put_aside(offset, &chunk),
             Action::CommitImage { length, crc } => self.commit(length, crc),
-            Action::ReadImage { offset } => Ok(self.image_part(offset)),
+            Action::ReadImage { offset } => Ok(Answer::part_of(&self.image, offset)),
             Action::Motion(_) | Action::Home | Action::Acknowledge => Err(Refusal::Unsupported),
         }
     }

@@ -1,8 +1,7 @@
 //! A machine that trusts nobody: it executes what the endpoint hands it, and panics where a number is out of range, where a piece comes
 //! without room, or where something is asked that its state does not allow. What the fuzz targets and the properties run behind the link.
 
-use std::collections::VecDeque;
-
+use host_sim::rig::Queue;
 use shared::active::ActivePiece;
 use shared::control::Start;
 use shared::executor::{Executor, Pieces, State};
@@ -12,7 +11,6 @@ use shared::link::{Action, Answer, Chunk, End, Ending, Frame, Identity, Machine,
 use shared::loader::Bounds;
 use shared::motion::MotionCommand;
 use shared::safety::{Coordinates, Refused};
-use shared::supply::PathTime;
 
 /// Pieces that its queue holds: few, so that it is full often.
 const CAPACITY: u16 = 4;
@@ -33,28 +31,6 @@ pub struct StrictMachine {
     pub acted: u32,
     /// What it said since this was emptied.
     pub said: Vec<u8>,
-}
-
-#[derive(Debug, Default)]
-struct Queue {
-    pieces: VecDeque<ActivePiece<f32>>,
-    reach: PathTime,
-}
-
-impl Pieces<f32> for Queue {
-    fn next_piece(&mut self, place: &mut Option<ActivePiece<f32>>) -> bool {
-        let next = self.pieces.pop_front();
-        *place = next.or(*place);
-        next.is_some()
-    }
-
-    fn horizon(&self) -> Option<PathTime> {
-        Some(self.reach)
-    }
-
-    fn discard(&mut self) {
-        self.pieces.clear();
-    }
 }
 
 impl Default for StrictMachine {
@@ -120,7 +96,7 @@ impl Machine for StrictMachine {
     }
 
     fn room(&self) -> u16 {
-        CAPACITY - self.queue.pieces.len() as u16
+        CAPACITY - self.queue.len() as u16
     }
 
     fn ready(&self) -> Result<(), Refusal> {
@@ -137,8 +113,7 @@ impl Machine for StrictMachine {
     fn push(&mut self, piece: ActivePiece<f32>) -> bool {
         assert!(self.room() > 0);
         check_piece(&piece);
-        self.queue.reach = piece.reach();
-        self.queue.pieces.push_back(piece);
+        self.queue.push(piece);
         self.taken += 1;
         true
     }
@@ -152,7 +127,7 @@ impl Machine for StrictMachine {
         if start.coordinates == Coordinates::Machine && !self.known {
             return Err(Refusal::Machine(Refused::PositionUnknown { axis: 0 }));
         }
-        assert!(!self.is_on_path() && !self.queue.pieces.is_empty());
+        assert!(!self.is_on_path() && !self.queue.is_empty());
         check_position([x, y, Fixed(0)]);
         self.executor.stand_at([x, y, Fixed(0)]);
         self.executor.begin(&start.motion);

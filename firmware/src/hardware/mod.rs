@@ -38,3 +38,27 @@ pub use h743::*;
 
 pub use blocking::Blocking;
 pub use cycles::Cycles;
+
+/// Everything that the application uses of the board.
+pub struct Board {
+    /// Interrupts 1024 times a second.
+    pub timer: TickTimer,
+    /// Switches and faults.
+    pub inputs: InputPins,
+    /// Where servo axes are.
+    pub encoders: Encoders,
+    /// Where they are told to go.
+    pub drives: Drives,
+    /// The steps of the next tick.
+    pub ring: StepRing,
+    /// Power for the drives.
+    pub enables: Enables,
+    /// Waits for the tick to fail.
+    pub watchdog: Watchdog,
+    /// The line to the host.
+    pub port: SerialPort,
+    /// The emergency stop's interrupt.
+    pub stop: StopInput,
+    /// For people.
+    pub lamp: Lamp,
+}

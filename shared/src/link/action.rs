@@ -4,6 +4,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::frame::checksum;
 use crate::motion::MotionCommand;
 
 /// Bytes of a configuration image in one frame.
@@ -78,6 +79,16 @@ pub enum Answer {
     },
 }
 
+impl Answer {
+    /// The part of an image, shorter than 64 KiB, that begins at `offset`; an empty one behind its end.
+    pub fn part_of(image: &[u8], offset: u16) -> Self {
+        let rest = image.get(usize::from(offset)..).unwrap_or_default();
+        let part = rest.get(..CHUNK_SIZE).unwrap_or(rest);
+        let chunk = Chunk::new(part).unwrap_or_default();
+        Self::Image { length: image.len() as u16, crc: checksum(image), offset, chunk }
+    }
+}
+
 /// Up to [`CHUNK_SIZE`] bytes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -93,6 +104,13 @@ impl Chunk {
         let mut chunk = Self { length: u8::try_from(bytes.len()).ok()?, halves: Default::default() };
         chunk.halves.as_flattened_mut().get_mut(..bytes.len())?.copy_from_slice(bytes);
         Some(chunk)
+    }
+
+    /// Puts the bytes into an image that is being sent, at `offset`; false where they do not belong there.
+    pub fn put_into(&self, draft: &mut [u8], offset: u16) -> bool {
+        let from = usize::from(offset);
+        let place = self.bytes().and_then(|bytes| Some((draft.get_mut(from..from.checked_add(bytes.len())?)?, bytes)));
+        place.map(|(place, bytes)| place.copy_from_slice(bytes)).is_some()
     }
 
     /// The bytes; none where the length that came is no length of a chunk.

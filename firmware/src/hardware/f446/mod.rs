@@ -36,7 +36,7 @@ pub use stop::StopInput;
 pub use timer::TickTimer;
 pub use watchdog::Watchdog;
 
-use super::Cycles;
+use super::{Board, Cycles};
 
 /// The clock of APB1, in Hz.
 const PCLK1_HZ: u32 = 40_000_000;
@@ -55,30 +55,6 @@ pub const LINE: pac::Interrupt = pac::Interrupt::USART2;
 
 /// Where a machine's settings are kept in [`Early::flash`]: sectors 6 and 7, RM0390 rev 6 table 5.
 pub const KEPT_RANGE: core::ops::Range<u32> = 0x4_0000..0x8_0000;
-
-/// Everything that the application uses of the board.
-pub struct Board {
-    /// Interrupts 1024 times a second.
-    pub timer: TickTimer,
-    /// Switches and faults.
-    pub inputs: InputPins,
-    /// Where servo axes are.
-    pub encoders: Encoders,
-    /// Where they are told to go.
-    pub drives: Drives,
-    /// The steps of the next tick.
-    pub ring: StepRing,
-    /// Power for the drives.
-    pub enables: Enables,
-    /// Waits for the tick to fail.
-    pub watchdog: Watchdog,
-    /// The line to the host.
-    pub port: SerialPort,
-    /// The emergency stop's interrupt.
-    pub stop: StopInput,
-    /// For people.
-    pub lamp: Lamp,
-}
 
 /// An LED that is not on the board.
 pub struct Lamp(PC11<Output<PushPull>>);

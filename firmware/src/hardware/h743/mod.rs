@@ -32,7 +32,7 @@ pub use stop::StopInput;
 pub use timer::TickTimer;
 pub use watchdog::Watchdog;
 
-use super::Cycles;
+use super::{Board, Cycles};
 
 /// Bits per second of the line.
 const BAUD: u32 = 921_600;
@@ -42,30 +42,6 @@ pub const LINE: pac::Interrupt = pac::Interrupt::USART3;
 
 /// Where a machine's settings are kept in [`Early::flash`]: the last two sectors.
 pub const KEPT_RANGE: core::ops::Range<u32> = 0xc_0000..0x10_0000;
-
-/// Everything that the application uses of the board.
-pub struct Board {
-    /// Interrupts 1024 times a second.
-    pub timer: TickTimer,
-    /// Switches and faults.
-    pub inputs: InputPins,
-    /// Where servo axes are.
-    pub encoders: Encoders,
-    /// Where they are told to go.
-    pub drives: Drives,
-    /// The steps of the next tick.
-    pub ring: StepRing,
-    /// Power for the drives.
-    pub enables: Enables,
-    /// Waits for the tick to fail.
-    pub watchdog: Watchdog,
-    /// The line to the host.
-    pub port: SerialPort,
-    /// The emergency stop's interrupt.
-    pub stop: StopInput,
-    /// For people.
-    pub lamp: Lamp,
-}
 
 /// The green LED.
 pub struct Lamp(PB0<Output<PushPull>>);
