@@ -35,6 +35,10 @@ fn controller_of(machine: Option<MachineSettings>, connections: usize, fault: bo
             controller.rig().pins.drive_fault ^= 0b010;
             controller.tick();
             controller.rig().pins.drive_fault ^= 0b010;
+            // An input counts as released after some time of rest; nobody may ask before it has passed.
+            for _ in 0..1024 {
+                controller.tick();
+            }
         }
         for stream in listener.incoming().take(connections) {
             let mut stream = stream.unwrap();
