@@ -19,8 +19,10 @@ use crate::real::Real;
 use crate::supply::PathTime;
 
 mod ph;
+mod spline;
 
 use ph::Ph;
+use spline::Spline;
 
 /// The shortest piece that is taken for a motion, in mm: a setpoint could not show less.
 const SHORTEST_MM: f64 = 4e-6;
@@ -55,6 +57,7 @@ enum Curve<T> {
     Ph(Ph<T>),
     Line { chord: Complex<T>, base: T },
     Arc { radius: Complex<T>, sweep: T, base: T },
+    Spline(Spline<T>),
 }
 
 impl<T: Real, const F: usize> ActivePiece<T, F> {
@@ -101,6 +104,7 @@ impl<T: Real, const F: usize> ActivePiece<T, F> {
                 // sigma_w of (20) with the constant |1 + kappa d|.
                 Curve::Arc { radius, sweep, base: (contact + centre / ratio) / length }
             }
+            Shape::Spline(shape) => Curve::Spline(Spline::activate(&shape, further.as_ref(), piece.feed)?),
         };
         let mut active = Self {
             curve,
@@ -145,6 +149,7 @@ impl<T: Real, const F: usize> ActivePiece<T, F> {
         match &self.curve {
             Curve::Ph(ph) => self.factor(tau) * ph.base(tau),
             Curve::Line { base, .. } | Curve::Arc { base, .. } => self.factor(tau) * *base,
+            Curve::Spline(spline) => self.factor(tau) * spline.base,
         }
     }
 
@@ -162,6 +167,7 @@ impl<T: Real, const F: usize> ActivePiece<T, F> {
                 let (sine, versine) = (*sweep * tau).sin_versin();
                 (*radius * Complex::new(-versine, sine), factor * *base)
             }
+            Curve::Spline(spline) => (spline.point(tau), factor * spline.base),
         }
     }
 
@@ -181,7 +187,15 @@ impl<T: Real, const F: usize> ActivePiece<T, F> {
     pub fn fraction<N: Number<T>>(&self, tau: N) -> N {
         match &self.curve {
             Curve::Ph(ph) => ph.u.at(tau, N::constant(T::ZERO)),
-            Curve::Line { .. } | Curve::Arc { .. } => tau + T::HALF,
+            Curve::Line { .. } | Curve::Arc { .. } | Curve::Spline(_) => tau + T::HALF,
+        }
+    }
+
+    /// The parameter on the curve, in -1/2..=1/2: tau itself, but on a spline, where tau is the fraction of the way.
+    pub fn parameter(&self, tau: T) -> T {
+        match &self.curve {
+            Curve::Spline(spline) => spline.parameter(tau),
+            Curve::Ph(_) | Curve::Line { .. } | Curve::Arc { .. } => tau,
         }
     }
 
@@ -195,6 +209,7 @@ impl<T: Real, const F: usize> ActivePiece<T, F> {
             }
             Curve::Line { chord, .. } => chord.norm(),
             Curve::Arc { radius, sweep, .. } => radius.norm() * sweep.abs(),
+            Curve::Spline(spline) => spline.speed(tau),
         }
     }
 
@@ -230,11 +245,10 @@ impl<T: Real, const F: usize> ActivePiece<T, F> {
     /// Where the further axes are at parameter `tau`; none where the piece leaves them where they are.
     #[inline(always)]
     pub fn further(&self, tau: T) -> Option<[Fixed; F]> {
-        self.travels.then(|| {
-            self.further.before_end(match &self.curve {
-                Curve::Ph(ph) => T::ONE - ph.u.at(tau, T::ZERO),
-                Curve::Line { .. } | Curve::Arc { .. } => T::HALF - tau,
-            })
+        self.travels.then(|| match &self.curve {
+            Curve::Ph(ph) => self.further.before_end(T::ONE - ph.u.at(tau, T::ZERO)),
+            Curve::Line { .. } | Curve::Arc { .. } => self.further.before_end(T::HALF - tau),
+            Curve::Spline(spline) => spline.further(tau, &self.further),
         })
     }
 
@@ -313,6 +327,7 @@ impl<T: Real, const F: usize> ActivePiece<T, F> {
             Curve::Ph(ph) => (-HALF_PARTS..=HALF_PARTS)
                 .fold(T::ZERO, |most: T, k| most.most(ph.base(T::from_int(k) * T::lit(0.5 / f64::from(HALF_PARTS))))),
             Curve::Line { base, .. } | Curve::Arc { base, .. } => *base,
+            Curve::Spline(spline) => spline.base,
         }
     }
 

@@ -52,6 +52,12 @@ pub enum PathError {
     },
     /// 1 + kappa d vanishes inside a piece: the offset has a cusp there, and turns back.
     Cusp,
+    /// A polynomial curve stands still inside a piece, or so nearly that its feed cannot be told.
+    Standstill,
+    /// The parametric speed of a polynomial curve varies so much that its feed correction polynomial would run backwards.
+    Uneven,
+    /// A polynomial curve bends in z, and the piece does not say where z begins and ends.
+    Bow,
     /// An arc turns by nothing or by more than one turn.
     Sweep {
         /// What was given, in radians.
@@ -132,6 +138,16 @@ impl fmt::Display for PathError {
             Self::Cusp => {
                 write!(f, "1 + kappa d vanishes inside the piece, where its offset has a cusp; trim it before")
             }
+            Self::Standstill => {
+                write!(
+                    f,
+                    "the spline stands still inside the piece, as at a cusp; end the piece there or move its points apart"
+                )
+            }
+            Self::Uneven => {
+                write!(f, "the spline's speed varies too much along the piece for its correction polynomial; split it")
+            }
+            Self::Bow => write!(f, "the spline bends in z, but the piece does not say where z begins and ends"),
             Self::Sweep { sweep } => write!(f, "the arc turns by {sweep} rad; it must turn, and by one turn at most"),
             Self::NotFinite => write!(f, "a number of the piece is infinite or not a number"),
             Self::Reach => write!(f, "the piece leaves the range of machine coordinates, 4 m from the origin"),

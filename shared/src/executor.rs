@@ -36,8 +36,10 @@ const ENDLESS: f64 = 1e6;
 pub struct Place<T> {
     /// How many pieces the path has had before this one.
     pub piece: u32,
-    /// The parameter on it, in -1/2..=1/2.
+    /// How far the walk has come on it, in -1/2..=1/2.
     pub tau: T,
+    /// The parameter on its curve, in -1/2..=1/2: tau, but on a spline.
+    pub parameter: T,
     /// The rate of (21) at that parameter, in 1/s: at the path's own feed.
     pub rate: T,
     /// The point relative to the piece's origin, in mm.
@@ -444,7 +446,9 @@ impl<T: Real, const F: usize> Executor<T, F> {
     /// Where on which piece the last tick ended; none before the first piece.
     pub fn place(&self) -> Option<Place<T>> {
         let piece = self.entered.checked_sub(1)?;
-        Some(Place { piece, tau: self.tau.value(), rate: self.rate, point: self.point })
+        let tau = self.tau.value();
+        let parameter = self.active.map_or(tau, |piece| piece.parameter(tau));
+        Some(Place { piece, tau, parameter, rate: self.rate, point: self.point })
     }
 
     /// The centre feed V_d at which the last tick ended, in mm/s. Not for the tick.

@@ -5,6 +5,7 @@
 //! | line | exact |
 //! | arc | exact: its ends, and the circle's outermost points that lie on it |
 //! | further axes | exact: their ends |
+//! | spline | holds it, z too: the hull of the control points of each [`PARTS`]-th |
 //! | PH curve, or its offset | holds it; on a common curve wider by less than 1 % of its size (test `the_box_of_a_common_curve_is_tight`) |
 //!
 //! r_d is a rational Bezier curve of degree 9 with the weights sigma (Farouki & Sakkalis 1990): the numerator is r sigma + d(-i w^2). On
@@ -15,9 +16,10 @@ use crate::complex::Complex;
 use crate::curve::speed_bernstein;
 use crate::error::PathError;
 use crate::fixed::Fixed;
-use crate::piece::{Piece, Shape};
+use crate::piece::{Piece, Shape, SplineShape};
 use crate::polynomial::{Polynomial, bernstein_product};
 use crate::real::Real;
+use crate::spline::PolynomialSegment;
 
 /// Into how many parts a PH curve is cut.
 pub const PARTS: i32 = 8;
@@ -62,6 +64,7 @@ impl<T: Real, const F: usize> Piece<T, F> {
             Shape::Line { chord } => Extent::of(chord * T::HALF).with(chord * -T::HALF, T::ZERO),
             Shape::Arc { radius, sweep, .. } => arc(radius, sweep),
             Shape::Ph { preimage, offset } => ph(preimage, offset),
+            Shape::Spline(shape) => spline(&shape),
         }
     }
 }
@@ -129,6 +132,26 @@ fn ph<T: Real>([a, b, c]: [Complex<T>; 3], offset: T) -> Extent<T> {
     extent.unwrap_or(Extent::of(Complex::ZERO)).rounded(largest)
 }
 
+/// The hull of the control points on each part.
+fn spline<T: Real>(shape: &SplineShape<T>) -> Extent<T> {
+    let [re, im] = [|z: Complex<T>| z.re, |z: Complex<T>| z.im].map(|coordinate| {
+        let [a, b, c, d, e] = shape.plane.map(coordinate);
+        range(Polynomial([T::ZERO, a, b, c, d, e]))
+    });
+    Extent { low: [re[0], im[0]], high: [re[1], im[1]] }
+}
+
+/// The lowest and the highest control point of a polynomial on all parts of -1/2..=1/2, widened by their rounding.
+fn range<T: Real, const N: usize>(polynomial: Polynomial<T, N>) -> [T; 2] {
+    let step = T::ONE / T::from_int(PARTS);
+    let parts = (0..PARTS).flat_map(|part| polynomial.bernstein(T::from_int(part) * step - T::HALF, step));
+    let start = polynomial.at(-T::HALF, T::ZERO);
+    let [low, high] = parts.fold([start; 2], |[low, high], point| [low.least(point), high.most(point)]);
+    let size = polynomial.0.iter().fold(T::ZERO, |sum, c| sum + c.abs());
+    let margin = size * (T::lit(40.0) * T::ROUNDOFF);
+    [low - margin, high + margin]
+}
+
 /// The control points of the offset of one part as a rational curve; none where a weight is not clearly above zero.
 fn rational<T: Real>(
     w: [Complex<T>; 3],
@@ -174,15 +197,30 @@ impl<const F: usize> SoftLimits<F> {
         for (axis, ((origin, travel), (low, high))) in (0..).zip(piece.origin.iter().zip(self.plane).zip(reach)) {
             within(axis, travel, *origin, low, high)?;
         }
-        // A further axis moves linearly, so its ends are its extremes.
+        // A further axis moves from one end to the other, so its ends are its extremes; only the z of a spline may bend.
         if let Some(further) = &piece.further {
             for (axis, ((from, to), travel)) in (2..).zip(further.from.iter().zip(further.to).zip(self.further)) {
                 within(axis, travel, *from, T::ZERO, T::ZERO)?;
                 within(axis, travel, to, T::ZERO, T::ZERO)?;
             }
         }
+        if let (Shape::Spline(shape), Some(further)) = (&piece.shape, &piece.further)
+            && let (Some(from), Some(to), Some(travel)) =
+                (further.from.first(), further.to.first(), self.further.first())
+        {
+            let [low, high] = bow(shape, to.minus(*from));
+            within(2, *travel, *to, low, high)?;
+        }
         Ok(())
     }
+}
+
+/// How far below and above its end the z of a spline goes that rises by `rise`, ends included, in mm.
+fn bow<T: Real>(shape: &SplineShape<T>, rise: T) -> [T; 2] {
+    let PolynomialSegment(space) = shape.segment(rise);
+    let z = Polynomial(space.map(|[_, _, z]| z));
+    let end = z.at(T::HALF, T::ZERO);
+    range(z).map(|z| z - end)
 }
 
 /// Whether what reaches from `low` to `high` about an origin lies within the travel of an axis.

@@ -97,6 +97,11 @@ impl<T: Real, const F: usize> Linear<T, F> {
         self.to
     }
 
+    /// How far the first axis goes, in mm; none where there is none.
+    pub fn first_way(&self) -> Option<T> {
+        self.way.first().copied()
+    }
+
     /// The length of the way of all axes together, in mm. Load time.
     pub fn length(&self) -> T {
         self.way.iter().fold(T::ZERO, |sum, way| sum + *way * *way).sqrt()

@@ -41,6 +41,7 @@ pub mod polynomial;
 pub mod real;
 pub mod safety;
 pub mod servo;
+pub mod spline;
 pub mod steps;
 pub mod supply;
 

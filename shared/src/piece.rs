@@ -12,6 +12,8 @@ use crate::feed::Ramp;
 use crate::fixed::{Fixed, Position};
 use crate::further::Travel;
 use crate::pace::PaceLimits;
+use crate::real::Real;
+use crate::spline::{CorrectionOrder, PolynomialSegment};
 
 /// The curve of a piece in its local frame.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -39,6 +41,37 @@ pub enum Shape<T> {
         /// point rests and the feed is the centre's.
         ratio: T,
     },
+    /// A polynomial curve that the tool's centre follows.
+    Spline(SplineShape<T>),
+}
+
+/// A quintic or cubic in a frame with its origin at v = 0.
+///
+/// z is the first of the further axes. On the travel of the piece it goes to - rise (1/2 - v) + (1/4 - v^2) (b_0 + b_1 v + ..): its ends
+/// are exact, whatever the bow.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct SplineShape<T> {
+    /// The coefficients of v to v^5, in mm.
+    pub plane: [Complex<T>; 5],
+    /// b_0 to b_3, in mm; zeros where z does not bend.
+    pub bow: [T; 4],
+    /// The feed correction polynomial that is fitted where the piece is loaded.
+    pub correction: CorrectionOrder,
+}
+
+impl<T: Real> SplineShape<T> {
+    /// The same curve in space, with a z that rises by so much from end to end, and is 0 in the middle without a bow.
+    pub fn segment(&self, rise: T) -> PolynomialSegment<T, 3> {
+        let [b0, b1, b2, b3] = self.bow;
+        let quarter = T::lit(0.25);
+        let z = [rise + b1 * quarter, b2 * quarter - b0, b3 * quarter - b1, -b2, -b3];
+        let mut coefficients = [[T::ZERO, T::ZERO, b0 * quarter]; 6];
+        for ((slot, plane), z) in coefficients.iter_mut().skip(1).zip(self.plane).zip(z) {
+            *slot = [plane.re, plane.im, z];
+        }
+        PolynomialSegment(coefficients)
+    }
 }
 
 /// A segment, a parameter interval and an offset distance, with the feed along it: the unit that a tick executes. `F` axes may
@@ -58,7 +91,7 @@ pub struct Piece<T, const F: usize = 1> {
     pub start: Option<Ramp<T>>,
     /// The ramp at the end; none where the path leaves smoothly.
     pub end: Option<Ramp<T>>,
-    /// How the further axes move with it, linearly in arc length; none where they stay. With it a line may have no chord: then it
+    /// How the further axes move with it, linearly in arc length (but for the z of a spline); none where they stay. With it a line may have no chord: then it
     /// is as long as this.
     pub further: Option<Travel<F>>,
     /// On the last piece of a path, and only there: the exact point where the path ends. Further axes end where `further` does.

@@ -24,6 +24,32 @@ impl<C: Copy, const N: usize> Polynomial<C, N> {
     }
 }
 
+impl<T: Real, const N: usize> Polynomial<T, N> {
+    /// The Bernstein coefficients over `from..=from + width`. Load time: some 2 N^2 operations.
+    pub fn bernstein(&self, from: T, width: T) -> [T; N] {
+        // Powers of x in from + width x, by repeated synthetic division.
+        let mut powers = self.0;
+        for low in 0..N {
+            for k in (low + 1..N).rev() {
+                powers[k - 1] = powers[k - 1] + powers[k] * from;
+            }
+        }
+        let mut scale = T::ONE;
+        for power in &mut powers {
+            *power = *power * scale;
+            scale = scale * width;
+        }
+        // b_i is the sum of a_j (i over j)/(n over j).
+        let mut bernstein = [T::ZERO; N];
+        for (i, slot) in bernstein.iter_mut().enumerate() {
+            for (j, &power) in powers.iter().enumerate().take(i + 1) {
+                *slot += power * (binomial::<T>(i, j) / binomial::<T>(N - 1, j));
+            }
+        }
+        bernstein
+    }
+}
+
 /// What is known of a polynomial's sign on an interval.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Sign {
@@ -99,6 +125,22 @@ pub(crate) fn binomial<T: Real>(n: usize, k: usize) -> T {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Both ends and a point between them, of a quintic over a part of its interval.
+    #[test]
+    fn the_bernstein_form_is_the_same_polynomial() {
+        let quintic = Polynomial([0.3_f64, -1.2, 4.0, 0.7, -2.5, 1.1]);
+        let b = quintic.bernstein(-0.4, 0.7);
+        for x in [0.0_f64, 0.25, 1.0] {
+            let mut points = b;
+            for k in 1..6 {
+                for j in 0..6 - k {
+                    points[j] = points[j] * (1.0 - x) + points[j + 1] * x;
+                }
+            }
+            assert!((points[0] - quintic.at(-0.4 + 0.7 * x, 0.0)).abs() < 1e-14, "{x}");
+        }
+    }
 
     #[test]
     fn a_double_zero_and_a_near_miss_are_told_apart() {

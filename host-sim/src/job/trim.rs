@@ -19,6 +19,7 @@ impl Places {
             }
             OffsetError::Crossing { segments: [segment, _], .. }
             | OffsetError::Cusp { segment }
+            | OffsetError::Spline { segment }
             | OffsetError::Reversal { node: segment } => self.segment_error(segment, error.sentence(distance, units)),
         })
     }

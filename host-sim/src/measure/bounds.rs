@@ -24,6 +24,7 @@ impl Bounds {
         match segment {
             Segment::Line(line) => Self::around([line.start, line.end]),
             Segment::Ph(curve) => Self::around(curve.control_points()),
+            Segment::Spline(curve) => Self::around(curve.points),
             Segment::Arc(arc) => {
                 // Between two of these points an arc leaves their chord by less than half of its part's length.
                 let points = (0..=16).map(|k| arc.point(f64::from(k) / 16.0));

@@ -6,8 +6,9 @@
 //! piece of the setpoint. The nearer one counts.
 
 use shared::complex::Complex;
-use shared::curve::{Curve as _, Segment};
+use shared::curve::Segment;
 
+use super::quintic::Quintic;
 use crate::path::{Path, PathPiece};
 
 /// How many ticks the position's own foot may stay behind on an earlier piece once the setpoint's piece is nearer.
@@ -78,7 +79,6 @@ impl<'a> ContourError<'a> {
 /// The parameter of the foot of `position`, within the piece.
 fn foot_parameter(piece: &PathPiece, position: Complex<f64>, guess: f64) -> f64 {
     let [first, last] = piece.interval;
-    let mut xi = guess.clamp(first, last);
     match &piece.segment {
         Segment::Line(line) => {
             let along = line.end - line.start;
@@ -91,23 +91,26 @@ fn foot_parameter(piece: &PathPiece, position: Complex<f64>, guess: f64) -> f64 
             let near = angle + turn * ((arc.sweep * guess - angle) / turn).round();
             (near / arc.sweep).clamp(first, last)
         }
-        Segment::Ph(curve) => {
-            for _ in 0..8 {
-                let w = curve.preimage(xi);
-                let tangent = w.square();
-                let bend = (w * curve.preimage_derivative(xi)) * 2.0;
-                let apart = position - curve.point(xi);
-                let speed_sqr = tangent.norm_sqr();
-                // Beyond the centre of curvature Newton's slope changes its sign; there the tangent's own slope leads back.
-                let slope = speed_sqr - apart.dot(bend);
-                let step = apart.dot(tangent) / if slope > 0.1 * speed_sqr { slope } else { speed_sqr };
-                let before = xi;
-                xi = (xi + step).clamp(first, last);
-                if (xi - before).abs() < 1e-9 {
-                    break;
-                }
-            }
-            xi
+        Segment::Ph(curve) => on_quintic(curve, position, guess, [first, last]),
+        Segment::Spline(curve) => on_quintic(curve, position, guess, [first, last]),
+    }
+}
+
+/// Newton's method from `guess`, within an interval.
+fn on_quintic(curve: &impl Quintic, position: Complex<f64>, guess: f64, [first, last]: [f64; 2]) -> f64 {
+    let mut xi = guess.clamp(first, last);
+    for _ in 0..8 {
+        let [tangent, bend] = curve.two_derivatives(xi);
+        let apart = position - curve.point(xi);
+        let speed_sqr = tangent.norm_sqr();
+        // Beyond the centre of curvature Newton's slope changes its sign; there the tangent's own slope leads back.
+        let slope = speed_sqr - apart.dot(bend);
+        let step = apart.dot(tangent) / if slope > 0.1 * speed_sqr { slope } else { speed_sqr };
+        let before = xi;
+        xi = (xi + step).clamp(first, last);
+        if (xi - before).abs() < 1e-9 {
+            break;
         }
     }
+    xi
 }

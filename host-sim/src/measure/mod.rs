@@ -6,6 +6,7 @@ mod foot_point;
 mod integral;
 mod nearest;
 mod path_distance;
+mod quintic;
 mod touching;
 
 pub use clearance::{Clearance, clearance, clearance_with};

@@ -9,9 +9,10 @@
 use std::f64::consts::TAU;
 
 use shared::complex::Complex;
-use shared::curve::{Arc, Curve as _, Line, PhQuintic, Segment};
+use shared::curve::{Arc, Curve as _, Line, Segment};
 
 use super::bounds::{Bounds, Tree};
+use super::quintic::Quintic;
 use crate::contour::Contour;
 
 /// What sums of squares may be wrong by, relative to the largest term.
@@ -97,7 +98,11 @@ impl<'a> Nearest<'a> {
             }
             Segment::Ph(curve) => {
                 offer(0.0);
-                on_ph(curve, p, &mut offer);
+                on_quintic(curve, p, &mut offer);
+            }
+            Segment::Spline(curve) => {
+                offer(0.0);
+                on_quintic(curve, p, &mut offer);
             }
         }
     }
@@ -120,9 +125,9 @@ pub(super) fn on_arc(arc: &Arc<f64>, p: Complex<f64>) -> [f64; 6] {
     [0.0, 1.0, within(angle), within(second(angle)), within(second(opposite)), within(opposite)]
 }
 
-/// Offers foot points of `p` on a PH quintic, the nearest one among them. `offer` takes a parameter and gives the smallest
+/// Offers foot points of `p` on a quintic, the nearest one among them. `offer` takes a parameter and gives the smallest
 /// distance so far.
-fn on_ph(curve: &PhQuintic<f64>, p: Complex<f64>, offer: &mut impl FnMut(f64) -> f64) {
+fn on_quintic(curve: &impl Quintic, p: Complex<f64>, offer: &mut impl FnMut(f64) -> f64) {
     let mut best = offer(1.0);
     let coefficients = squared_distance(&curve.control_points().map(|q| q - p));
     let slack = SLACK * coefficients.iter().copied().fold(0.0, f64::max);
@@ -174,10 +179,9 @@ pub(super) fn halves<const N: usize>(mut d: [f64; N]) -> ([f64; N], [f64; N]) {
 }
 
 /// The foot point of `p` within `from..to`, where the squared distance has one minimum: Newton's method, kept in a bracket.
-pub(super) fn foot(curve: &PhQuintic<f64>, p: Complex<f64>, from: f64, to: f64) -> f64 {
+pub(super) fn foot(curve: &impl Quintic, p: Complex<f64>, from: f64, to: f64) -> f64 {
     let slope = |xi: f64| {
-        let w = curve.preimage(xi);
-        let (tangent, bend) = (w.square(), (w * curve.preimage_derivative(xi)) * 2.0);
+        let [tangent, bend] = curve.two_derivatives(xi);
         let apart = curve.point(xi) - p;
         (apart.dot(tangent), tangent.norm_sqr() + apart.dot(bend))
     };
@@ -211,6 +215,8 @@ pub(super) fn foot(curve: &PhQuintic<f64>, p: Complex<f64>, from: f64, to: f64) 
 
 #[cfg(test)]
 mod tests {
+    use shared::curve::PhQuintic;
+
     use super::*;
 
     fn at(x: f64, y: f64) -> Complex<f64> {

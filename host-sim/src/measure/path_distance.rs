@@ -9,6 +9,7 @@ use shared::curve::{Arc, Curve as _, Line, PhQuintic, Segment};
 
 use super::bounds::{Bounds, Tree};
 use super::nearest::{halves, on_arc, on_line};
+use super::quintic::Quintic;
 
 /// Intervals below this width are not halved any more: what is left in them is one zero, or a pair that touches.
 const NARROW: f64 = 1e-9;
@@ -80,7 +81,8 @@ impl Part {
                     offer(xi);
                 }
             }
-            Segment::Ph(curve) => on_ph(curve, *offset, q, &mut offer),
+            Segment::Ph(curve) => on_quintic(curve, *offset, q, &mut offer),
+            Segment::Spline(curve) => on_quintic(curve, *offset, q, &mut offer),
         }
     }
 }
@@ -96,6 +98,7 @@ fn part(segment: &Segment<f64>, [from, to]: [f64; 2]) -> Segment<f64> {
             Segment::Arc(Arc { start, radius, sweep })
         }
         Segment::Ph(curve) => Segment::Ph(ph_part(curve, from, to)),
+        Segment::Spline(curve) => Segment::Spline(curve.part(from, to)),
     }
 }
 
@@ -113,7 +116,8 @@ fn bounds(segment: &Segment<f64>, offset: f64) -> Bounds {
     let longest = (0..PARTS).map(|k| {
         let [from, to] = [k, k + 1].map(|k| f64::from(k) / f64::from(PARTS));
         let turn = match segment {
-            Segment::Line(_) => 0.0,
+            // A spline has no offset.
+            Segment::Line(_) | Segment::Spline(_) => 0.0,
             Segment::Arc(arc) => arc.sweep.abs() / f64::from(PARTS),
             Segment::Ph(curve) => {
                 // The control polygon of a preimage turns by no less than the preimage.
@@ -139,8 +143,8 @@ fn cusps(segment: &Segment<f64>, offset: f64) -> Vec<f64> {
     changes.map(|[from, to]| zero(&stretch, from, to)).collect()
 }
 
-/// Offers every foot of `q` on a whole PH quintic that can carry a point of its offset nearer than the best one.
-fn on_ph(curve: &PhQuintic<f64>, offset: f64, q: Complex<f64>, offer: &mut impl FnMut(f64) -> f64) {
+/// Offers every foot of `q` on a whole quintic that can carry a point of its offset nearer than the best one.
+fn on_quintic(curve: &impl Quintic, offset: f64, q: Complex<f64>, offer: &mut impl FnMut(f64) -> f64) {
     let slope = |xi: f64| (curve.point(xi) - q).dot(curve.derivative(xi));
     let mut best = offer(0.0);
     let mut stack = vec![(super::nearest::squared_distance(&curve.control_points().map(|r| r - q)), 0.0, 1.0)];

@@ -23,6 +23,11 @@ pub enum OffsetError {
         /// Its number.
         segment: usize,
     },
+    /// A segment is a polynomial curve, whose offset is no curve that can be driven exactly.
+    Spline {
+        /// Its number.
+        segment: usize,
+    },
     /// At a node the contour goes back the way it came.
     Reversal {
         /// The node at the end of the segment of this number.
@@ -56,6 +61,10 @@ impl OffsetError {
             }
             Self::Cusp { segment } => format!(
                 "segment {segment} stands still inside and turns back there, so it has no normal; make two segments of it"
+            ),
+            Self::Spline { segment } => format!(
+                "segment {segment} is a polynomial spline, which has no exact offset; give its offset a distance of 0, or draw it \
+                 with `ph` or `hermite`"
             ),
             Self::Reversal { node } => format!(
                 "at node {node}, where segment {node} ends, the contour goes back the way it came; no tool fits in between, \

@@ -1,7 +1,7 @@
 //! The contour in a frame of its own: its middle at the origin, its size 1, so that rounding and tolerances are relative to it.
 
 use shared::complex::Complex;
-use shared::curve::{Arc, Curve as _, Line, PhQuintic, Segment};
+use shared::curve::{Arc, Curve as _, Line, PhQuintic, Segment, Spline};
 
 use super::crossing::{Crossing, crossings};
 use super::field::Field;
@@ -37,6 +37,10 @@ pub struct Ground {
 impl Ground {
     /// Checks a contour for offsets up to |`distance`|, in mm, and turns its frame by `angle`, in radians. Errors: a cusp, a node that turns back.
     pub fn new(contour: &Contour, distance: f64, angle: f64) -> Result<Self, OffsetError> {
+        let is_spline = |segment: &Segment<f64>| matches!(segment, Segment::Spline(_));
+        if let Some(segment) = contour.segments.iter().position(is_spline) {
+            return Err(OffsetError::Spline { segment });
+        }
         let [low, high] = contour.extent();
         let middle = (low + high) * 0.5;
         let scale = 1.0 / (high - low).norm().max(distance.abs());
@@ -145,6 +149,9 @@ fn framed(segment: &Segment<f64>, middle: Complex<f64>, scale: f64, turn: Comple
             Segment::Ph(PhQuintic { start: place(start), w: w.map(|w| w * root) })
         }
         Segment::Line(Line { start, end }) => Segment::Line(Line { start: place(start), end: place(end) }),
+        Segment::Spline(Spline { points, correction }) => {
+            Segment::Spline(Spline { points: points.map(place), correction })
+        }
         Segment::Arc(Arc { start, radius, sweep }) => {
             Segment::Arc(Arc { start: place(start), radius: radius * turn * scale, sweep })
         }

@@ -66,6 +66,8 @@ impl Stretch {
                 Local::Ph { origin: cut.origin, w: [a, b, c], r }
             }
             Shape::Line { chord } => Local::Line { middle: cut.origin, chord },
+            // `Ground` refuses contours with splines, so that none comes here.
+            Shape::Spline(_) => Local::Line { middle: cut.origin, chord: segment.point(to) - segment.point(from) },
             Shape::Arc { radius, sweep, .. } => Local::Arc { middle: cut.origin, radius, sweep },
         };
         Self { from, to, offset, shape }
@@ -158,7 +160,7 @@ impl Stretch {
 pub fn cuts(segment: &Segment<f64>) -> Vec<f64> {
     let mut cuts = vec![0.0, 1.0];
     match segment {
-        Segment::Line(_) => {}
+        Segment::Line(_) | Segment::Spline(_) => {}
         Segment::Arc(arc) => cuts.extend(even(arc)),
         Segment::Ph(curve) => {
             cuts.extend(curve.inflections());

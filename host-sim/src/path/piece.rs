@@ -4,7 +4,7 @@ use shared::complex::Complex;
 use shared::curve::{Curve as _, Segment};
 use shared::feed::Ramp;
 use shared::fixed::{Position, round_point};
-use shared::piece::{Piece, Shape};
+use shared::piece::{Piece, Shape, SplineShape};
 
 use crate::contour::{Along, Contour};
 
@@ -74,7 +74,7 @@ impl PathPiece {
         if self.is_forward() { tangent } else { -tangent }
     }
 
-    /// The parameter on the segment for the local one in -1/2..=1/2.
+    /// The parameter on the segment for the local one of its curve in -1/2..=1/2.
     pub fn parameter(&self, tau: f64) -> f64 {
         let [from, to] = self.interval;
         0.5 * (from + to) + tau * (to - from)
@@ -132,6 +132,9 @@ impl PathPiece {
             Shape::Line { chord } => Shape::Line { chord: chord.into() },
             Shape::Arc { radius, sweep, ratio } => {
                 Shape::Arc { radius: radius.into(), sweep: real(sweep), ratio: real(ratio) }
+            }
+            Shape::Spline(SplineShape { plane, bow, correction }) => {
+                Shape::Spline(SplineShape { plane: plane.map(Complex::from), bow: bow.map(real), correction })
             }
         };
         Piece {

@@ -134,11 +134,11 @@ impl<'a> Gauge<'a> {
         let actual = Complex::new(x, y);
         let commanded = executor.setpoint();
         let setpoint = Complex::new(commanded[0].to_mm(), commanded[1].to_mm());
-        let place = executor.place().unwrap_or(Place { piece: 0, tau: -0.5, rate: 0.0, point: Complex::ZERO });
+        let place =
+            executor.place().unwrap_or(Place { piece: 0, tau: -0.5, parameter: -0.5, rate: 0.0, point: Complex::ZERO });
         let number = place.piece as usize;
-        let tau = f64::from(place.tau);
         let (xi, feed) = match self.path.pieces.get(number) {
-            Some(piece) => (piece.parameter(tau), f64::from(executor.centre_feed())),
+            Some(piece) => (piece.parameter(f64::from(place.parameter)), f64::from(executor.centre_feed())),
             None => (0.0, 0.0),
         };
         let contour_error = self.error.at(actual, number, xi);

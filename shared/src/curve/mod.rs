@@ -6,12 +6,14 @@ mod arc;
 mod hermite;
 mod line;
 mod ph_quintic;
+mod spline;
 
 pub use arc::Arc;
 pub use hermite::{HermiteError, hermite, hermite_candidates};
 pub use line::Line;
 pub use ph_quintic::PhQuintic;
 pub(crate) use ph_quintic::speed_bernstein;
+pub use spline::Spline;
 
 use crate::complex::Complex;
 use crate::piece::Shape;
@@ -66,6 +68,8 @@ pub enum Segment<T> {
     Line(Line<T>),
     /// A circular arc.
     Arc(Arc<T>),
+    /// A polynomial curve.
+    Spline(Spline<T>),
 }
 
 macro_rules! each_kind {
@@ -74,6 +78,7 @@ macro_rules! each_kind {
             Segment::Ph($curve) => $value,
             Segment::Line($curve) => $value,
             Segment::Arc($curve) => $value,
+            Segment::Spline($curve) => $value,
         }
     };
 }
