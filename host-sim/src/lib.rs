@@ -8,6 +8,7 @@
 //! | [`input`] | files as they are read, and errors that name file, line and column |
 //! | [`contour`] | the part's curve: segments and nodes |
 //! | [`offset`] | the exact trimmed offset of a contour |
+//! | [`spline`] | splines through points, and ways to drive them at a constant feed |
 //! | [`job`] | what a person wants: contour, offset, feed; the contour form |
 //! | [`path`] | the exact curves of the tool's centre in f64, and the pieces that a controller gets of them |
 //! | [`approach`] | the way to where a job begins |
@@ -44,6 +45,7 @@ pub mod reproduce;
 pub mod rig;
 pub mod session;
 pub mod simulate;
+pub mod spline;
 pub mod stream;
 pub mod transport;
 pub mod trimming;
