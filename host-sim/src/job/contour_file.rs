@@ -1,5 +1,7 @@
 //! Reads the contour form (design section 6) and checks it, sentence by sentence.
 
+use std::ops::Range;
+
 use shared::complex::Complex;
 use shared::curve::{Arc, Curve as _, Line, PhQuintic, Segment, hermite};
 
@@ -8,6 +10,7 @@ use super::{Corner, FeedWish, GivenPiece, Job, Part, Place, Places, Reduction, U
 use super::{check_ramp, check_rate, check_reduction, check_weight};
 use crate::contour::{Along, Contour};
 use crate::input::{InputError, Source};
+use crate::offset::OffsetError;
 
 /// A gap of this many mm is none unless the file says otherwise: what four decimals of a millimetre may leave.
 const TOLERANCE_MM: f64 = 1e-3;
@@ -23,6 +26,12 @@ pub(super) fn job(source: Source) -> Result<Job, InputError> {
     let (part, tolerance) = read_part(source, &raw)?;
     let Part { units, offset, contour, places } = part;
     let pieces = read_pieces(&places.source, &raw, &contour, offset)?;
+    let is_spline = |segment: &Segment<f64>| matches!(segment, Segment::Spline(_));
+    if let Some(segment) = contour.segments.iter().position(is_spline)
+        && offset != 0.0
+    {
+        return Err(places.segment_error(segment, OffsetError::Spline { segment }.sentence(offset, units)));
+    }
     let chosen = raw.offset.and_then(|offset| offset.chosen).map(toml::Spanned::into_inner);
     Ok(Job { units, tolerance, rest: raw.rest, offset, chosen, feed, contour, pieces, places })
 }
@@ -53,10 +62,11 @@ fn read_part(source: Source, raw: &RawJob) -> Result<(Part, f64), InputError> {
         }
         Some(offset) => return Err(source.error(&offset.distance.span(), "the offset distance is not a number")),
     };
-    let contour = Contour { segments: read_segments(&source, raw, tolerance)?, closed: *raw.closed.get_ref() };
+    let (segments, places) = read_segments(&source, raw, tolerance)?.into_iter().unzip();
+    let contour = Contour { segments, closed: *raw.closed.get_ref() };
     let chosen = raw.offset.as_ref().and_then(|offset| offset.chosen.as_ref());
     let places = Places {
-        segments: raw.segment.iter().map(|s| s.span()).collect(),
+        segments: places,
         pieces: raw.piece.iter().map(|p| p.span()).collect(),
         distance,
         chosen: chosen.map_or(Place::Nowhere, |chosen| Place::File(chosen.span())),
@@ -93,15 +103,26 @@ fn read_feed(source: &Source, raw: &RawFeed, units: Units) -> Result<FeedWish, I
     })
 }
 
-fn read_segments(source: &Source, raw: &RawJob, tolerance: f64) -> Result<Vec<Segment<f64>>, InputError> {
+/// The segments, each with the place of its [[segment]]: a spline is several.
+fn read_segments(
+    source: &Source,
+    raw: &RawJob,
+    tolerance: f64,
+) -> Result<Vec<(Segment<f64>, Range<usize>)>, InputError> {
     let unit = raw.units.short();
     let in_units = |mm: f64| mm / raw.units.mm();
-    let mut segments: Vec<Segment<f64>> = Vec::with_capacity(raw.segment.len());
+    let mut segments: Vec<(Segment<f64>, Range<usize>)> = Vec::with_capacity(raw.segment.len());
+    // A spline that is the whole of a closed contour joins itself smoothly.
+    let alone = *raw.closed.get_ref() && raw.segment.len() == 1;
     let mut end: Option<Complex<f64>> = None;
     for (number, item) in raw.segment.iter().enumerate() {
         let fail = |message: String| source.error(&item.span(), format_args!("segment {number}: {message}"));
-        let segment = segment(item.get_ref(), end, raw.units, tolerance).map_err(fail)?;
-        let [start, new_end] = [0.0, 1.0].map(|xi| segment.point(xi));
+        let curves = curves(item.get_ref(), end, alone, raw.units, tolerance).map_err(fail)?;
+        let (Some(start), Some(new_end)) =
+            (curves.first().map(|curve| curve.point(0.0)), curves.last().map(|curve| curve.point(1.0)))
+        else {
+            continue;
+        };
         if let Some(before) = end {
             let gap = (start - before).norm();
             if gap > tolerance {
@@ -115,12 +136,12 @@ fn read_segments(source: &Source, raw: &RawJob, tolerance: f64) -> Result<Vec<Se
             }
         }
         end = Some(new_end);
-        segments.push(segment);
+        segments.extend(curves.into_iter().map(|curve| (curve, item.span())));
     }
     let (Some(first), Some(end)) = (segments.first(), end) else {
         return Err(InputError::new(source.name.clone(), "the contour has no segments; add a [[segment]]"));
     };
-    let gap = (first.point(0.0) - end).norm();
+    let gap = (first.0.point(0.0) - end).norm();
     if *raw.closed.get_ref() && gap > tolerance {
         return Err(source.error(
             &raw.closed.span(),
@@ -133,28 +154,45 @@ fn read_segments(source: &Source, raw: &RawJob, tolerance: f64) -> Result<Vec<Se
     Ok(segments)
 }
 
-fn segment(raw: &RawSegment, end: Option<Complex<f64>>, units: Units, tolerance: f64) -> Result<Segment<f64>, String> {
+/// The curves of one [[segment]]: one, or those of a spline.
+fn curves(
+    raw: &RawSegment,
+    end: Option<Complex<f64>>,
+    alone: bool,
+    units: Units,
+    tolerance: f64,
+) -> Result<Vec<Segment<f64>>, String> {
     let mm = units.mm();
     let point = |[x, y]: Point| Complex::new(x * mm, y * mm);
     let start_or_end =
         |start: Option<Point>| start.map(point).or(end).ok_or_else(|| "the first segment needs a `start`".to_string());
-    let segment = match (&raw.ph, &raw.line, &raw.arc, &raw.hermite) {
-        (Some(ph), None, None, None) => {
+    let curves = match (&raw.ph, &raw.line, &raw.arc, &raw.hermite, &raw.bezier, &raw.spline) {
+        (Some(ph), None, None, None, None, None) => {
             let root = mm.sqrt();
             let w = ph.w.map(|[u, v]| Complex::new(u * root, v * root));
-            Segment::Ph(PhQuintic { start: start_or_end(ph.start)?, w })
+            vec![Segment::Ph(PhQuintic { start: start_or_end(ph.start)?, w })]
         }
-        (None, Some(line), None, None) => Segment::Line(Line { start: start_or_end(line.start)?, end: point(line.to) }),
-        (None, None, Some(raw), None) => {
-            Segment::Arc(arc(start_or_end(raw.start)?, point(raw.to), point(raw.centre), raw.ccw, units, tolerance)?)
+        (None, Some(line), None, None, None, None) => {
+            vec![Segment::Line(Line { start: start_or_end(line.start)?, end: point(line.to) })]
         }
-        (None, None, None, Some(raw)) => {
+        (None, None, Some(raw), None, None, None) => {
+            let start = start_or_end(raw.start)?;
+            vec![Segment::Arc(arc(start, point(raw.to), point(raw.centre), raw.ccw, units, tolerance)?)]
+        }
+        (None, None, None, Some(raw), None, None) => {
             let start = start_or_end(raw.start)?;
             let curve = hermite(start, point(raw.to), point(raw.d0), point(raw.d1)).map_err(|e| e.to_string())?;
-            Segment::Ph(curve)
+            vec![Segment::Ph(curve)]
         }
-        _ => return Err("it must be one of `ph`, `line`, `arc` and `hermite`".to_string()),
+        (None, None, None, None, Some(raw), None) => vec![raw.read(start_or_end(raw.start)?, units)?],
+        (None, None, None, None, None, Some(raw)) => raw.read(start_or_end(raw.start)?, alone, units, tolerance)?,
+        _ => return Err("it must be one of `ph`, `line`, `arc`, `hermite`, `bezier` and `spline`".to_string()),
     };
+    curves.iter().try_for_each(|curve| check(curve, units))?;
+    Ok(curves)
+}
+
+fn check(segment: &Segment<f64>, units: Units) -> Result<(), String> {
     let length = segment.length();
     if !length.is_finite() {
         return Err("a number of it is infinite or not a number".to_string());
@@ -163,7 +201,7 @@ fn segment(raw: &RawSegment, end: Option<Complex<f64>>, units: Units, tolerance:
     if length < 4e-6 {
         return Err(format!("it has no length ({}); leave it out", units.length(length)));
     }
-    Ok(segment)
+    Ok(())
 }
 
 fn arc(

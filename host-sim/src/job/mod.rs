@@ -4,6 +4,7 @@ mod contour_file;
 mod places;
 mod reduction;
 mod schema;
+mod splines;
 mod trim;
 
 use crate::contour::{Along, Contour};

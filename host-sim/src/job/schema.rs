@@ -4,6 +4,7 @@ use serde::Deserialize;
 use toml::Spanned;
 
 use super::Units;
+use super::splines::{RawBezier, RawSpline};
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -54,6 +55,8 @@ pub(super) struct RawSegment {
     pub line: Option<RawLine>,
     pub arc: Option<RawArc>,
     pub hermite: Option<RawHermite>,
+    pub bezier: Option<RawBezier>,
+    pub spline: Option<RawSpline>,
 }
 
 #[derive(Deserialize)]

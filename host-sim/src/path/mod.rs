@@ -3,6 +3,7 @@
 //! The exact path is what everything is measured against; [`PathPiece::wire`] makes of it what the controller gets.
 
 mod drivable;
+mod even;
 mod piece;
 mod route;
 

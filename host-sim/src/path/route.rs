@@ -3,6 +3,7 @@
 
 use super::PathPiece;
 use super::drivable::drivable;
+use super::even::even;
 use crate::contour::{Along, SMOOTH};
 use crate::input::InputError;
 use crate::job::{Corner, Job};
@@ -38,7 +39,7 @@ impl Route {
         }
         let pieces = if job.pieces.is_empty() {
             let whole = |segment| Along::Segment { segment, from: 0.0, to: 1.0 };
-            bare(job, (0..job.contour.segments.len()).map(whole))
+            bare(job, (0..job.contour.segments.len()).map(whole)).iter().flat_map(even).collect()
         } else {
             bare(job, job.pieces.iter().map(|given| given.along))
         };
