@@ -11,6 +11,7 @@
 
 mod canvas;
 mod chart;
+mod feed_correction;
 mod figures;
 mod geometry;
 mod leftover;
@@ -29,6 +30,7 @@ use crate::offset::{Offset, Undercut};
 use crate::path::Path;
 use crate::simulate::Sample;
 
+pub use feed_correction::feed_correction;
 pub use reproduction::reproduction;
 pub use simulation::simulation;
 

@@ -1,6 +1,7 @@
 //! Published experiments, run again and laid beside their published figures.
 
 pub mod farouki2018;
+pub mod feed_correction;
 
 use serde::Serialize;
 

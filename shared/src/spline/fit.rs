@@ -102,6 +102,15 @@ pub fn fit<T: Real, const D: usize>(
     if !segment.moves() {
         return Err(PathError::Standstill);
     }
+    let (length, correction) = from_two_samples(segment, order).ok_or(PathError::Standstill)?;
+    if correction.grows() { Ok((length, correction)) } else { Err(PathError::Uneven) }
+}
+
+/// The same without checks. None where the curve stands still at an end.
+pub fn from_two_samples<T: Real, const D: usize>(
+    segment: &PolynomialSegment<T, D>,
+    order: CorrectionOrder,
+) -> Option<(T, Correction<T>)> {
     let node = node(order.fitted().unwrap_or(1));
     let (before, between, after) = (
         segment.panel(-T::HALF, T::HALF - node),
@@ -109,14 +118,13 @@ pub fn fit<T: Real, const D: usize>(
         segment.panel(node, T::HALF - node),
     );
     let length = before + between + after;
-    let ends = segment.ends(length).ok_or(PathError::Standstill)?;
+    let ends = segment.ends(length)?;
     let mut fit = Fit::new(&ends, order);
     let per_length = T::ONE / length;
     // From the nearer end.
     fit.sample(before * per_length - T::HALF, -node);
     fit.sample(T::HALF - after * per_length, node);
-    let correction = fit.finish();
-    if correction.grows() { Ok((length, correction)) } else { Err(PathError::Uneven) }
+    Some((length, fit.finish()))
 }
 
 /// The node of the Gauss rule for the weight q^(2m): 1/(2 sqrt(4 m + 3)).
