@@ -21,12 +21,8 @@ pub(super) fn print(result: &Reproduction) {
     println!("\noperations a segment");
     for total in &result.totals {
         let published = total.published.map_or("-".to_string(), |published| published.to_string());
-        println!(
-            "{:34} M = {:<4} published {published:>6}, here {:>6}",
-            total.name,
-            total.divisions,
-            total.counted.sum()
-        );
+        let (name, divisions, here) = (&total.name, total.divisions, total.counted.sum());
+        println!("{name:34} M = {divisions:<4} published {published:>6}, here {here:>6}  {}", total.why);
     }
     println!("\nthe seventh order from fewer samples, on the fan");
     println!(
@@ -43,7 +39,8 @@ pub(super) fn print(result: &Reproduction) {
     println!("\ntime a segment in this run, us");
     for (name, time) in [
         ("14 equations", times.fourteen),
-        ("closed form", times.closed_form),
+        ("closed form in powers, as published", times.closed_form),
+        ("closed form about the middle", times.centred),
         ("two samples, arc length included", times.two_samples),
         ("arc length of the first two, beside", times.chords),
     ] {

@@ -40,20 +40,24 @@ pub fn sampled(spline: &Interpolant<2>) -> Vec<Sampled> {
     let shortest = spline.spans.iter().copied().fold(f64::INFINITY, f64::min);
     let one = |(segment, &span): (&PolynomialSegment<f64, 2>, &f64)| {
         // Less a roundoff, so that the shortest one is not cut once more.
-        let divisions = (LEAST_DIVISIONS * span / shortest * (1.0 - 1e-12)).ceil().max(1.0);
-        let mut s = 0.0;
-        let mut before = segment.point(-0.5);
-        let mut samples = vec![(0.0, 0.0)];
-        for j in 1..=divisions as u32 {
-            let part = f64::from(j) / divisions;
-            let here = segment.point(part - 0.5);
-            s += (here[0] - before[0]).hypot(here[1] - before[1]);
-            samples.push((s, part * span));
-            before = here;
-        }
-        Sampled { segment: *segment, span, samples }
+        divided(segment, span, (LEAST_DIVISIONS * span / shortest * (1.0 - 1e-12)).ceil().max(1.0))
     };
     spline.segments.iter().zip(&spline.spans).map(one).collect()
+}
+
+/// Cuts one segment into so many parts, a whole number.
+pub fn divided(segment: &PolynomialSegment<f64, 2>, span: f64, divisions: f64) -> Sampled {
+    let mut s = 0.0;
+    let mut before = segment.point(-0.5);
+    let mut samples = vec![(0.0, 0.0)];
+    for j in 1..=divisions as u32 {
+        let part = f64::from(j) / divisions;
+        let here = segment.point(part - 0.5);
+        s += (here[0] - before[0]).hypot(here[1] - before[1]);
+        samples.push((s, part * span));
+        before = here;
+    }
+    Sampled { segment: *segment, span, samples }
 }
 
 /// FC(15) to FC(20), from all samples.
