@@ -1,7 +1,7 @@
 //! Contours built segment by segment, and moved, turned, scaled, mirrored and reversed as wholes.
 
 use shared::complex::Complex;
-use shared::curve::{Arc, Curve as _, Line, PhQuintic, Segment, hermite};
+use shared::curve::{Arc, Curve as _, Line, PhQuintic, Segment, Spline, hermite};
 
 use host_sim::contour::Contour;
 
@@ -162,6 +162,9 @@ impl Placing {
                 let w = curve.w.map(|w| root * if self.mirror { w.conj() } else { w });
                 Segment::Ph(PhQuintic { start: self.point(curve.start), w })
             }
+            Segment::Spline(spline) => {
+                Segment::Spline(Spline { points: spline.points.map(|p| self.point(p)), ..*spline })
+            }
         }
     }
 
@@ -183,6 +186,11 @@ pub fn reversed(contour: &Contour) -> Contour {
             // r' changes its sign, and w^2 does when w is turned by a quadrant.
             let [w0, w1, w2] = curve.w.map(Complex::left);
             Segment::Ph(PhQuintic { start: curve.end(), w: [w2, w1, w0] })
+        }
+        Segment::Spline(spline) => {
+            let mut points = spline.points;
+            points.reverse();
+            Segment::Spline(Spline { points, ..*spline })
         }
     });
     Contour { segments: segments.collect(), closed: contour.closed }

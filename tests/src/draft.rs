@@ -1,10 +1,10 @@
 //! Pieces before they are cut: a segment, an interval, an offset and the feed, all in f64.
 
 use shared::complex::Complex;
-use shared::curve::{Arc, Curve, Line, PhQuintic, Segment};
+use shared::curve::{Arc, Curve, Line, PhQuintic, Segment, Spline};
 use shared::feed::Ramp;
 use shared::fixed::{Fixed, Position, round_point};
-use shared::piece::{Piece, Shape};
+use shared::piece::{Piece, Shape, SplineShape};
 use shared::real::Real;
 
 /// What a planner knows of one piece. Lengths in mm, feeds in mm/s.
@@ -69,6 +69,9 @@ impl Draft {
                 Shape::Arc { radius, sweep, ratio } => {
                     Shape::Arc { radius: complex(radius), sweep: number(sweep), ratio: number(ratio) }
                 }
+                Shape::Spline(SplineShape { plane, bow, correction }) => {
+                    Shape::Spline(SplineShape { plane: plane.map(complex), bow: bow.map(number), correction })
+                }
             },
             interval: [number(from), number(to)],
             feed: number(self.feed),
@@ -129,6 +132,7 @@ pub fn moved(segment: Segment<f64>, by: Complex<f64>) -> Segment<f64> {
         Segment::Ph(curve) => Segment::Ph(PhQuintic { start: curve.start + by, ..curve }),
         Segment::Line(line) => Segment::Line(Line { start: line.start + by, end: line.end + by }),
         Segment::Arc(arc) => Segment::Arc(Arc { start: arc.start + by, ..arc }),
+        Segment::Spline(spline) => Segment::Spline(Spline { points: spline.points.map(|p| p + by), ..spline }),
     }
 }
 
@@ -141,6 +145,7 @@ pub fn turned(segment: Segment<f64>, by: Complex<f64>) -> Segment<f64> {
         }
         Segment::Line(line) => Segment::Line(Line { start: line.start * by, end: line.end * by }),
         Segment::Arc(arc) => Segment::Arc(Arc { start: arc.start * by, radius: arc.radius * by, ..arc }),
+        Segment::Spline(spline) => Segment::Spline(Spline { points: spline.points.map(|p| p * by), ..spline }),
     }
 }
 

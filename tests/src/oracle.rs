@@ -69,6 +69,24 @@ pub fn ramp_integral(factor: f64) -> f64 {
     integral(&|u| 1.0 / modulation(Some(Ramp { length: 1.0, factor }), u), 0.0, 1.0)
 }
 
+/// The control points of the derivative.
+fn steps(points: &[Complex<f64>]) -> Vec<Complex<f64>> {
+    let degree = (points.len() - 1) as f64;
+    points.windows(2).map(|pair| (pair[1] - pair[0]) * degree).collect()
+}
+
+/// The sum of control points with Bernstein's polynomials.
+fn bernstein(points: &[Complex<f64>], xi: f64) -> Complex<f64> {
+    let degree = points.len() as i32 - 1;
+    let mut binomial = 1.0;
+    let mut sum = Complex::ZERO;
+    for (k, point) in (0..).zip(points) {
+        sum = sum + *point * (binomial * xi.powi(k) * (1.0 - xi).powi(degree - k));
+        binomial *= f64::from(degree - k) / f64::from(k + 1);
+    }
+    sum
+}
+
 impl Draft {
     /// w and w' of a PH segment.
     fn preimage(&self, xi: f64) -> Option<[Complex<f64>; 2]> {
@@ -84,6 +102,7 @@ impl Draft {
             Segment::Ph(_) => self.preimage(xi).map_or(0.0, |[w, _]| w.re.powi(2) + w.im.powi(2)),
             Segment::Line(line) => (line.end.re - line.start.re).hypot(line.end.im - line.start.im),
             Segment::Arc(arc) => arc.radius.re.hypot(arc.radius.im) * arc.sweep.abs(),
+            Segment::Spline(spline) => bernstein(&steps(&spline.points), xi).norm(),
         }
     }
 
@@ -95,6 +114,11 @@ impl Draft {
             }),
             Segment::Line(_) => 0.0,
             Segment::Arc(arc) => arc.sweep.signum() / arc.radius.re.hypot(arc.radius.im),
+            Segment::Spline(spline) => {
+                let slopes = steps(&spline.points);
+                let slope = bernstein(&slopes, xi);
+                slope.cross(bernstein(&steps(&slopes), xi)) / slope.norm().powi(3)
+            }
         };
         1.0 + kappa * self.offset
     }
@@ -166,6 +190,7 @@ impl Draft {
                 let (sine, cosine) = (arc.sweep * xi).sin_cos();
                 arc.centre() + arc.radius * Complex::new(cosine, sine)
             }
+            Segment::Spline(spline) => bernstein(&spline.points, xi),
         }
     }
 
@@ -178,6 +203,7 @@ impl Draft {
                 let (sine, cosine) = (arc.sweep * xi).sin_cos();
                 arc.radius * Complex::new(cosine, sine) * Complex::new(0.0, arc.sweep.signum())
             }
+            Segment::Spline(spline) => bernstein(&steps(&spline.points), xi),
         };
         along * (1.0 / along.re.hypot(along.im))
     }

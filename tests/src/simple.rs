@@ -34,6 +34,8 @@ impl<'a> Part<'a> {
         let turn = match segment {
             Segment::Line(_) => 0.0,
             Segment::Arc(arc) => arc.sweep.abs() * (to - from),
+            // No bound is known, and none of these contours has one.
+            Segment::Spline(_) => f64::INFINITY,
             Segment::Ph(curve) => {
                 // The control polygon of a preimage turns by no less than the preimage.
                 let [w0, w1, w2] = curve.w;
