@@ -176,3 +176,64 @@ fn several_loops_need_a_choice() {
         assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     }
 }
+
+/// An open spline through some points, and a curve by its control points; the segment stands in line 5.
+fn spline(segment: &str) -> String {
+    format!("units = \"mm\"\nclosed = false\n{FEED}[[segment]]\n{segment}\n")
+}
+
+/// What is wrong with a spline is said with its place, and nothing moves.
+#[test]
+fn faulty_splines_have_their_sentence() {
+    let through = |points: &str| spline(&format!("spline = {{ start = [0.0, 0.0], points = [{points}] }}"));
+    let bezier = |points: &str| spline(&format!("bezier = {{ start = [0.0, 0.0], points = [{points}] }}"));
+    let cases = [
+        ("two-points", through("[1.0, 0.0]"), "has 2 points, and it takes 3"),
+        (
+            "repeated",
+            through("[1.0, 0.0], [1.0, 0.0], [2.0, 3.0]"),
+            "point 2 of the spline stands where the one before",
+        ),
+        ("nan", through("[1.0, nan], [1.0, 0.0], [2.0, 3.0]"), "point 1 of the spline has a coordinate that is not a"),
+        ("cusp", bezier("[10.0, 10.0], [0.0, 10.0], [10.0, 0.0]"), "the spline stands still inside the piece"),
+        ("still-start", bezier("[0.0, 0.0], [5.0, 10.0], [10.0, 0.0]"), "the spline stands still inside the piece"),
+        ("four-points", bezier("[5.0, 10.0], [10.0, 0.0]"), "has 2 points behind its start; it needs 3"),
+        (
+            "degree",
+            spline("spline = { start = [0.0, 0.0], degree = 4, points = [[1.0, 0.0], [1.0, 2.0]] }"),
+            "degree 3 or 5",
+        ),
+        (
+            "no-start",
+            spline("bezier = { points = [[1.0, 0.0], [1.0, 2.0], [3.0, 3.0]] }"),
+            "the first segment needs a `start`",
+        ),
+    ];
+    for (name, text, words) in cases {
+        let error = common::refused("simulate", "--trace", &format!("spline-{name}"), &text, &[]);
+        says(name, &error, &["job.toml:5:1: segment 0", words]);
+    }
+    let offset = through("[1.0, 0.0], [1.0, 2.0]") + "[offset]\ndistance = 1.0\n";
+    let error = common::refused("simulate", "--trace", "spline-offset", &offset, &[]);
+    says("offset", &error, &["job.toml:5:1: segment 0 is a polynomial spline, which has no exact offset"]);
+    let parts = offset.replace(FEED, "") + "[[piece]]\nsegment = 0\n" + FEED;
+    let error = common::refused("simulate", "--trace", "spline-pieces", &parts, &[]);
+    says("pieces", &error, &["is a polynomial spline, which has no exact offset"]);
+}
+
+/// A spline among other segments, and one that is cut where its feed would fluctuate, both run.
+#[test]
+fn good_splines_run() {
+    for segment in [
+        "line = { start = [0.0, 0.0], to = [5.0, 0.0] }\n[[segment]]\nspline = { points = [[9.0, 1.0], [9.0, 6.0], [2.0, 7.0]], degree = 5, parameter = \"arc\", correction = \"ninth\" }",
+        // So near a cusp that the whole of it has no correction.
+        "bezier = { start = [0.0, 0.0], points = [[9.9, 10.0], [0.0, 10.0], [10.0, 0.0]] }",
+    ] {
+        let output = run("simulate", &file("good-spline.toml", &spline(segment)), &["--json", "-"]);
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        let result: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+        let fed = result["max_feed"].as_f64().unwrap();
+        assert!((fed / 600.0 - 1.0).abs() < 2e-3, "{fed}");
+        assert!(result["max_contour_error"].as_f64().unwrap() < 2e-5);
+    }
+}
