@@ -62,18 +62,22 @@ fn growth() {
 fn flattened(contour: &Contour, tolerance: f64) -> Polyline<f64> {
     let mut flat = Polyline::new_closed();
     for segment in &contour.segments {
-        match segment {
-            Segment::Line(line) => flat.add_vertex(PlineVertex::new(line.start.re, line.start.im, 0.0)),
+        let points = match segment {
+            Segment::Line(line) => {
+                flat.add_vertex(PlineVertex::new(line.start.re, line.start.im, 0.0));
+                continue;
+            }
             Segment::Arc(arc) => {
                 flat.add_vertex(PlineVertex::new(arc.start.re, arc.start.im, (0.25 * arc.sweep).tan()));
+                continue;
             }
-            Segment::Ph(curve) => {
-                let mut add = |point: Complex<f64>| {
-                    flat.add_vertex(PlineVertex::new(point.re, point.im, 0.0));
-                };
-                chords(curve.control_points(), tolerance, &mut add);
-            }
-        }
+            Segment::Ph(curve) => curve.control_points(),
+            Segment::Spline(curve) => curve.points,
+        };
+        let mut add = |point: Complex<f64>| {
+            flat.add_vertex(PlineVertex::new(point.re, point.im, 0.0));
+        };
+        chords(points, tolerance, &mut add);
     }
     flat
 }

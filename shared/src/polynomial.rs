@@ -31,7 +31,7 @@ impl<T: Real, const N: usize> Polynomial<T, N> {
         let mut powers = self.0;
         for low in 0..N {
             for k in (low + 1..N).rev() {
-                powers[k - 1] = powers[k - 1] + powers[k] * from;
+                powers[k - 1] += powers[k] * from;
             }
         }
         let mut scale = T::ONE;

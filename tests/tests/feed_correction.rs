@@ -38,7 +38,7 @@ fn the_example_is_the_fan() {
     let job = host_sim::job::Job::from_toml("fan.toml", text).unwrap();
     let starts: Vec<[f64; 2]> = job.contour.segments.iter().map(|s| s.point(0.0)).map(|p| [p.re, p.im]).collect();
     assert_eq!(starts.len(), 88);
-    let off = starts.iter().flatten().zip(fan_points().iter().flatten()).map(|(a, b)| (a - b).abs());
+    let off = starts.into_iter().flatten().zip(fan_points().into_iter().flatten()).map(|(a, b)| (a - b).abs());
     // A curve is evaluated to rounding.
     assert!(off.fold(0.0, f64::max) < 1e-13);
 }

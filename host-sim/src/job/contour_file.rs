@@ -103,15 +103,14 @@ fn read_feed(source: &Source, raw: &RawFeed, units: Units) -> Result<FeedWish, I
     })
 }
 
-/// The segments, each with the place of its [[segment]]: a spline is several.
-fn read_segments(
-    source: &Source,
-    raw: &RawJob,
-    tolerance: f64,
-) -> Result<Vec<(Segment<f64>, Range<usize>)>, InputError> {
+/// A segment, and the place of its [[segment]].
+type Placed = (Segment<f64>, Range<usize>);
+
+/// The segments; a [[segment]] that is a spline is several.
+fn read_segments(source: &Source, raw: &RawJob, tolerance: f64) -> Result<Vec<Placed>, InputError> {
     let unit = raw.units.short();
     let in_units = |mm: f64| mm / raw.units.mm();
-    let mut segments: Vec<(Segment<f64>, Range<usize>)> = Vec::with_capacity(raw.segment.len());
+    let mut segments: Vec<Placed> = Vec::with_capacity(raw.segment.len());
     // A spline that is the whole of a closed contour joins itself smoothly.
     let alone = *raw.closed.get_ref() && raw.segment.len() == 1;
     let mut end: Option<Complex<f64>> = None;

@@ -73,22 +73,24 @@ pub fn fit<F: Field>(ends: &Ends<F>, samples: impl IntoIterator<Item = (F, F)>) 
     Some(std::array::from_fn(|k| solution[k]))
 }
 
+/// The number, if it is above zero: not NaN either.
+fn positive<F: Field>(number: F) -> Option<F> {
+    (number > F::of(0.0)).then_some(number)
+}
+
 /// Crout's decomposition with partial pivoting on rows scaled by their largest entry, and both substitutions.
 fn solve<F: Field, const N: usize>(mut a: [[F; N]; N], mut right: [F; N]) -> Option<[F; N]> {
     let zero = F::of(0.0);
     let mut scale = [zero; N];
     for (scale, row) in scale.iter_mut().zip(&a) {
         let largest = row.iter().fold(zero, |most, x| if x.size() > most { x.size() } else { most });
-        if !(largest > zero) {
-            return None;
-        }
-        *scale = F::of(1.0) / largest;
+        *scale = F::of(1.0) / positive(largest)?;
     }
     for column in 0..N {
         for row in 0..N {
             let mut sum = a[row][column];
-            for k in 0..row.min(column) {
-                sum = sum - a[row][k] * a[k][column];
+            for (k, above) in a.iter().enumerate().take(row.min(column)) {
+                sum = sum - a[row][k] * above[column];
             }
             a[row][column] = sum;
         }
@@ -99,9 +101,7 @@ fn solve<F: Field, const N: usize>(mut a: [[F; N]; N], mut right: [F; N]) -> Opt
         a.swap(pivot, column);
         right.swap(pivot, column);
         scale.swap(pivot, column);
-        if !(a[column][column].size() > zero) {
-            return None;
-        }
+        positive(a[column][column].size())?;
         let inverse = F::of(1.0) / a[column][column];
         for row in a.iter_mut().skip(column + 1) {
             row[column] = row[column] * inverse;

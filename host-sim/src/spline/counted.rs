@@ -43,16 +43,17 @@ pub fn count<R>(work: impl FnOnce() -> R) -> (Operations, R) {
     (DONE.get(), result)
 }
 
-fn note(what: impl FnOnce(&mut Operations)) {
+/// One more of that kind.
+fn note(kind: impl FnOnce(&mut Operations) -> &mut u64) {
     let mut done = DONE.get();
-    what(&mut done);
+    *kind(&mut done) += 1;
     DONE.set(done);
 }
 
 impl Add for Counted {
     type Output = Self;
     fn add(self, other: Self) -> Self {
-        note(|done| done.additions += 1);
+        note(|done| &mut done.additions);
         Self(self.0 + other.0)
     }
 }
@@ -60,7 +61,7 @@ impl Add for Counted {
 impl Sub for Counted {
     type Output = Self;
     fn sub(self, other: Self) -> Self {
-        note(|done| done.subtractions += 1);
+        note(|done| &mut done.subtractions);
         Self(self.0 - other.0)
     }
 }
@@ -68,7 +69,7 @@ impl Sub for Counted {
 impl Mul for Counted {
     type Output = Self;
     fn mul(self, other: Self) -> Self {
-        note(|done| done.multiplications += 1);
+        note(|done| &mut done.multiplications);
         Self(self.0 * other.0)
     }
 }
@@ -76,7 +77,7 @@ impl Mul for Counted {
 impl Div for Counted {
     type Output = Self;
     fn div(self, other: Self) -> Self {
-        note(|done| done.divisions += 1);
+        note(|done| &mut done.divisions);
         Self(self.0 / other.0)
     }
 }
@@ -143,7 +144,7 @@ impl Real for Counted {
     }
 
     fn sqrt(self) -> Self {
-        note(|done| done.roots += 1);
+        note(|done| &mut done.roots);
         Self(self.0.sqrt())
     }
 

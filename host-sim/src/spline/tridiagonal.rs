@@ -48,23 +48,20 @@ pub(super) fn solve<const D: usize>(rows: &[Row<D>], ring: bool) -> Vec<[f64; D]
 
 /// Thomas's algorithm.
 fn in_row<const D: usize>(rows: &[Row<D>]) -> Vec<[f64; D]> {
-    let mut solution: Vec<[f64; D]> = rows.iter().map(|row| row.right).collect();
+    let mut solution = Vec::with_capacity(rows.len());
     let mut factors = Vec::with_capacity(rows.len());
-    let mut factor = 0.0;
-    for (k, row) in rows.iter().enumerate() {
-        let before = if k == 0 { 0.0 } else { row.before };
-        let pivot = row.diagonal - before * factor;
-        for axis in 0..D {
-            let previous = if k == 0 { 0.0 } else { solution[k - 1][axis] };
-            solution[k][axis] = (row.right[axis] - before * previous) / pivot;
-        }
+    let (mut factor, mut previous) = (0.0, [0.0; D]);
+    for row in rows {
+        let pivot = row.diagonal - row.before * factor;
+        previous = std::array::from_fn(|axis| (row.right[axis] - row.before * previous[axis]) / pivot);
         factor = row.after / pivot;
+        solution.push(previous);
         factors.push(factor);
     }
-    for k in (0..rows.len().saturating_sub(1)).rev() {
-        for axis in 0..D {
-            solution[k][axis] -= factors[k] * solution[k + 1][axis];
-        }
+    let mut next = [0.0; D];
+    for (x, factor) in solution.iter_mut().zip(factors).rev() {
+        next = std::array::from_fn(|axis| x[axis] - factor * next[axis]);
+        *x = next;
     }
     solution
 }
@@ -86,11 +83,10 @@ mod tests {
             let x = solve(&rows, ring);
             for (k, row) in rows.iter().enumerate() {
                 let at = |step: usize, stands: bool| if stands { x[(k + step) % count] } else { [0.0; 2] };
-                for axis in 0..2 {
-                    let sum = row.before * at(count - 1, ring || k > 0)[axis]
-                        + row.diagonal * x[k][axis]
-                        + row.after * at(1, ring || k + 1 < count)[axis];
-                    assert!((sum - row.right[axis]).abs() < 1e-13, "{count} {ring}: row {k}");
+                let (before, after) = (at(count - 1, ring || k > 0), at(1, ring || k + 1 < count));
+                for (((before, here), after), right) in before.iter().zip(x[k]).zip(after).zip(row.right) {
+                    let sum = row.before * before + row.diagonal * here + row.after * after;
+                    assert!((sum - right).abs() < 1e-13, "{count} {ring}: row {k}");
                 }
             }
         }
