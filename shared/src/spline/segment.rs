@@ -2,7 +2,7 @@
 //!
 //! A cubic is a quintic whose highest coefficients are zero. Lengths are mm.
 
-use crate::polynomial::{Polynomial, Sign, bernstein_product, sign};
+use crate::polynomial::{Polynomial, Sign, binomial, sign};
 use crate::real::Real;
 
 /// r(v) = c_0 + c_1 v + .. + c_5 v^5 in `D` dimensions.
@@ -111,6 +111,8 @@ impl<T: Real, const D: usize> PolynomialSegment<T, D> {
     }
 
     /// Whether |r'| is above zero all along, by more than rounding. Load time.
+    ///
+    /// |r'|^2 is the sum of one square an axis, each in terms of x^k (1 - x)^(8 - k), which are those of Bernstein without their factor.
     pub fn moves(&self) -> bool {
         let mut square = [T::ZERO; 9];
         for axis in 0..D {
@@ -118,11 +120,21 @@ impl<T: Real, const D: usize> PolynomialSegment<T, D> {
             for (j, (slope, coefficient)) in (1..).zip(slope.iter_mut().zip(self.0.iter().skip(1))) {
                 *slope = coefficient.get(axis).copied().unwrap_or(T::ZERO) * T::from_int(j);
             }
-            let b = Polynomial(slope).bernstein(-T::HALF, T::ONE);
-            let product: [T; 9] = bernstein_product(b, b);
-            for (sum, term) in square.iter_mut().zip(product) {
-                *sum += term;
+            let mut b = Polynomial(slope).bernstein(-T::HALF, T::ONE);
+            for (i, slot) in b.iter_mut().enumerate() {
+                *slot = *slot * binomial::<T>(4, i);
             }
+            for (i, &x) in b.iter().enumerate() {
+                // x_i x_j stands twice in the square, but for j = i.
+                let mut factor = x;
+                for (slot, &y) in square.iter_mut().skip(2 * i).zip(b.iter().skip(i)) {
+                    *slot += factor * y;
+                    factor = x + x;
+                }
+            }
+        }
+        for (k, slot) in square.iter_mut().enumerate() {
+            *slot = *slot * (T::ONE / binomial::<T>(8, k));
         }
         sign(square) == Sign::Positive
     }

@@ -28,7 +28,8 @@ const FIT_ROW: &str = "fit of a cubic";
 #[derive(Clone, Debug, Serialize)]
 pub struct Budget {
     /// By kind of piece and order, such as `ph 1`: instructions per stage in the middle of a ramp; and of the whole
-    /// interrupt the median, the tick that crosses a node, and the most of all, those at rest and at the start among them.
+    /// interrupt the median, the tick that crosses a node, and the most of all, those at rest and at the start among them. One row is what
+    /// loading a spline piece takes beside.
     pub instructions: BTreeMap<String, BTreeMap<String, u32>>,
     /// The most stack of the interrupt, in bytes, with the frame that the processor stacks.
     pub stack_bytes: u32,
@@ -105,7 +106,7 @@ fn fit(image: &Image, servos: &Mounting) -> Result<BTreeMap<String, u32>, Error>
     Ok(BTreeMap::from([
         ("most".to_owned(), whole.instructions()),
         ("roots".to_owned(), part(&["::sqrt"])),
-        ("checks".to_owned(), part(&["::moves", "::grows", "::sign", "::bernstein_product", "::bernstein"])),
+        ("checks".to_owned(), part(&["::moves", "::grows", "::sign"])),
     ]))
 }
 

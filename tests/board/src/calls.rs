@@ -48,7 +48,10 @@ impl Calls {
     pub fn new(image: &Image, function: &Function) -> Result<Self, Error> {
         let reach = Reach::of(image, function);
         if let Some((name, address)) = reach.indirect.first() {
-            return Err(Error::new(format!("{} calls through a register, in {name} at {address:#010x}", function.name)));
+            return Err(Error::new(format!(
+                "{} calls through a register, in {name} at {address:#010x}",
+                function.name
+            )));
         }
         let ends = image.instructions(function).into_iter().filter(Instruction::is_return);
         Ok(Self {

@@ -144,7 +144,7 @@ pub fn all_ways() -> (Header<f32>, Vec<Piece<f32>>) {
 pub fn splines(order: Order) -> (Header<f32>, Vec<Piece<f32>>) {
     let header = Header { weight: 0.5, order, closed: false, tolerance: 1e-3, rest: false, pace: PaceLimits::USUAL };
     let bent = SplineShape {
-        bow: [3.0, -2.0, 1.0, 0.5],
+        bow: [6.0, -2.0, 1.0, 0.5],
         ..flat([(9.0, 4.0), (-2.0, 5.0), (3.0, -4.0)], CorrectionOrder::Seventh)
     };
     let quintic = [(8.0, -3.0), (1.0, 4.0), (-2.0, 3.0), (1.5, -2.0), (1.0, 2.5)];

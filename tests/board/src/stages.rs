@@ -18,7 +18,10 @@ pub const STAGES: [(&str, &[&str]); 9] = [
     ("pace", &["shared/src/pace/mod.rs", "shared/src/pace/lattice.rs"]),
     ("interpolator", &["shared/src/interpolator.rs", "shared/src/accumulator.rs"]),
     ("feed law", &["shared/src/feed.rs"]),
-    ("curve", &["shared/src/active.rs", "shared/src/active/ph.rs", "shared/src/active/spline.rs", "shared/src/further.rs"]),
+    (
+        "curve",
+        &["shared/src/active.rs", "shared/src/active/ph.rs", "shared/src/active/spline.rs", "shared/src/further.rs"],
+    ),
     ("servo", &["shared/src/servo.rs"]),
     ("safety", &["shared/src/safety/mod.rs", "shared/src/safety/table.rs", "shared/src/safety/debounce.rs"]),
     ("control", &["shared/src/control/mod.rs", "shared/src/control/axes.rs"]),
