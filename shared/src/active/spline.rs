@@ -29,7 +29,7 @@ pub(super) struct Spline<T> {
 }
 
 impl<T: Real> Spline<T> {
-    /// Fits u(s); `further` is how the further axes move, the first of them z. Load time: 15 roots and some thousand operations.
+    /// Fits u(s); `further` is how the further axes move, the first of them z. Load time: what [`fit`] takes.
     pub(super) fn activate<const F: usize>(
         shape: &SplineShape<T>,
         further: Option<&Linear<T, F>>,

@@ -3,8 +3,10 @@
 use std::collections::BTreeMap;
 
 use serde::Serialize;
+use shared::piece::Order;
 
 use crate::Error;
+use crate::calls::Calls;
 use crate::image::Image;
 use crate::jobs::{Kind, ORDERS, diagonal, job};
 use crate::machine::Mounting;
@@ -16,11 +18,18 @@ use crate::stages::Stages;
 /// Ticks of each job over which the stages are counted: the middle of a ramp, where every term of the feed law is alive.
 const RAMP_TICKS: std::ops::Range<u32> = 40..72;
 
+/// The function that fits the feed correction polynomial of a spline piece when it is loaded, in three dimensions.
+const FIT: &str = "shared::spline::fit::fit::<f32, 3>";
+
+/// The row of that.
+const FIT_ROW: &str = "fit of a cubic";
+
 /// Every figure.
 #[derive(Clone, Debug, Serialize)]
 pub struct Budget {
     /// By kind of piece and order, such as `ph 1`: instructions per stage in the middle of a ramp; and of the whole
-    /// interrupt the median, the tick that crosses a node, and the most of all, those at rest and at the start among them.
+    /// interrupt the median, the tick that crosses a node, and the most of all, those at rest and at the start among them. One row is what
+    /// loading a spline piece takes beside.
     pub instructions: BTreeMap<String, BTreeMap<String, u32>>,
     /// The most stack of the interrupt, in bytes, with the frame that the processor stacks.
     pub stack_bytes: u32,
@@ -66,6 +75,8 @@ pub fn measure(image: &Image, servos: &Mounting, mut progress: impl FnMut(&str))
             stack = stack.max(counted.seen.handler_stack);
         }
     }
+    progress(FIT_ROW);
+    instructions.insert(FIT_ROW.to_owned(), fit(image, servos)?);
     let sizes = image.sizes();
     Ok(Budget {
         instructions,
@@ -76,6 +87,27 @@ pub fn measure(image: &Image, servos: &Mounting, mut progress: impl FnMut(&str))
         indirect: reach.indirect.iter().map(|(name, address)| format!("{name} at {address:#010x}")).collect(),
         reached: reach.functions.iter().map(|function| function.name.clone()).collect(),
     })
+}
+
+/// What it takes to fit the feed correction polynomial of a cubic, once for each piece that is loaded: all of it, and the parts of it that
+/// are square roots and that make sure that the curve and the polynomial go on everywhere.
+fn fit(image: &Image, servos: &Mounting) -> Result<BTreeMap<String, u32>, Error> {
+    let stages = Stages::new(image)?;
+    let calls = Calls::new(image, image.function_named(FIT)?)?;
+    let (header, pieces) = job(Kind::Spline, Order::First);
+    let run = run_job(image, servos, header, pieces, 1.0, |probe| probe.count_calls(calls))?;
+    // Both pieces are the same curve; an interrupt may have come into one of their fits.
+    let whole = run.seen.calls.iter().find(|call| call.is_whole());
+    let whole = whole.ok_or_else(|| Error::new(format!("none of {} fits was left alone", run.seen.calls.len())))?;
+    let part = |functions: &[&str]| {
+        let counts = whole.executed.iter();
+        counts.filter(|&(&address, _)| stages.is_within(address, functions)).map(|(_, count)| count).sum()
+    };
+    Ok(BTreeMap::from([
+        ("most".to_owned(), whole.instructions()),
+        ("roots".to_owned(), part(&["::sqrt"])),
+        ("checks".to_owned(), part(&["::moves", "::grows", "::sign"])),
+    ]))
 }
 
 /// The rows of `image` in a machine of three step axes: the interrupt along an offset PH piece, and at rest, in instructions.

@@ -134,6 +134,12 @@ impl Image {
         function.range.contains(&address).then_some(function)
     }
 
+    /// The function of this name, as a person writes it.
+    pub fn function_named(&self, name: &str) -> Result<&Function, Error> {
+        let found = self.functions.values().find(|function| function.name == name);
+        found.ok_or_else(|| Error::new(format!("{} has no function {name}", self.path.display())))
+    }
+
     /// The handler of the tick's interrupt.
     pub fn tick_handler(&self) -> Result<&Function, Error> {
         let address = self.symbol(TICK_HANDLER)? & !1;

@@ -6,7 +6,8 @@ use shared::feed::Ramp;
 use shared::fixed::{Fixed, round_point};
 use shared::further::Travel;
 use shared::pace::PaceLimits;
-use shared::piece::{Header, Order, Piece, Shape};
+use shared::piece::{Header, Order, Piece, Shape, SplineShape};
+use shared::spline::CorrectionOrder;
 
 /// The kinds of pieces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -17,11 +18,13 @@ pub enum Kind {
     Line,
     /// An arc.
     Arc,
+    /// A polynomial cubic under a feed correction polynomial of the seventh order.
+    Spline,
 }
 
 impl Kind {
     /// All of them.
-    pub const ALL: [Self; 3] = [Self::Ph, Self::Line, Self::Arc];
+    pub const ALL: [Self; 4] = [Self::Ph, Self::Line, Self::Arc, Self::Spline];
 
     /// Its name in tables.
     pub fn name(self) -> &'static str {
@@ -29,6 +32,7 @@ impl Kind {
             Self::Ph => "ph",
             Self::Line => "line",
             Self::Arc => "arc",
+            Self::Spline => "spline",
         }
     }
 }
@@ -48,12 +52,22 @@ pub fn job(kind: Kind, order: Order) -> (Header<f32>, Vec<Piece<f32>>) {
         },
         Kind::Line => Shape::Line { chord: Complex::new(16.0, 12.0) },
         Kind::Arc => Shape::Arc { radius: Complex::new(10.0, 0.0), sweep: 2.0, ratio: 1.25 },
+        Kind::Spline => Shape::Spline(flat([(16.0, 9.0), (-4.0, 7.0), (6.0, -5.0)], CorrectionOrder::Seventh)),
     };
     let ramp = Some(Ramp { length: 0.25, factor: 0.25 });
     let origin = round_point(Complex::new(30.0, 20.0));
     let first =
         Piece { origin, shape, interval: [0.0, 1.0], feed: 50.0, start: ramp, end: ramp, further: None, last: None };
     twice(header, first)
+}
+
+/// A polynomial curve in the plane with these coefficients of v, v^2, ..; the higher ones are zero.
+fn flat<const N: usize>(coefficients: [(f32, f32); N], correction: CorrectionOrder) -> SplineShape<f32> {
+    let mut plane = [Complex::ZERO; 5];
+    for (slot, (x, y)) in plane.iter_mut().zip(coefficients) {
+        *slot = Complex::new(x, y);
+    }
+    SplineShape { plane, bow: [0.0; 4], correction }
 }
 
 /// A piece, and again where it ended.
@@ -122,12 +136,50 @@ pub fn all_ways() -> (Header<f32>, Vec<Piece<f32>>) {
     let half = std::f32::consts::PI;
     let shapes =
         [arc(2.0, 0.0, half), arc(-2.0, 0.0, half), arc(-1.0, 0.0, -half / 2.0), line(1.5, -0.4), line(-1.5, 0.4)];
-    let mut at = round_point(Complex::new(12.0, -7.0));
-    let mut pieces = Vec::new();
-    for shape in shapes {
+    chain(header, round_point(Complex::new(12.0, -7.0)), 25.0, shapes.map(|shape| (shape, None)))
+}
+
+/// Polynomial curves of every kind, beside a line and a PH curve, at 30 mm/s: a cubic that bends in z, a quintic whose z goes straight, a
+/// quintic that leaves z alone, a cubic of a lower order; about 1.5 s.
+pub fn splines(order: Order) -> (Header<f32>, Vec<Piece<f32>>) {
+    let header = Header { weight: 0.5, order, closed: false, tolerance: 1e-3, rest: false, pace: PaceLimits::USUAL };
+    let bent = SplineShape {
+        bow: [6.0, -2.0, 1.0, 0.5],
+        ..flat([(9.0, 4.0), (-2.0, 5.0), (3.0, -4.0)], CorrectionOrder::Seventh)
+    };
+    let quintic = [(8.0, -3.0), (1.0, 4.0), (-2.0, 3.0), (1.5, -2.0), (1.0, 2.5)];
+    let ph = Shape::Ph {
+        preimage: [Complex::new(3.0, 0.3), Complex::new(-0.4, 1.1), Complex::new(0.2, -0.3)],
+        offset: -1.0,
+    };
+    let travel = |from: f64, to: f64| Some(Travel { from: [Fixed::from_mm(from)], to: [Fixed::from_mm(to)] });
+    let shapes = [
+        (Shape::Spline(bent), travel(1.0, 3.5)),
+        (Shape::Line { chord: Complex::new(3.0, 4.0) }, None),
+        (Shape::Spline(flat(quintic, CorrectionOrder::Ninth)), travel(3.5, 2.0)),
+        (ph, None),
+        (Shape::Spline(flat(quintic.map(|(x, y)| (-y, x)), CorrectionOrder::Ninth)), None),
+        (Shape::Spline(flat([(7.0, 1.0), (0.5, -2.0)], CorrectionOrder::FifthFitted)), travel(2.0, 2.0)),
+    ];
+    let (header, mut pieces) = chain(header, round_point(Complex::new(5.0, 8.0)), 30.0, shapes);
+    let ramp = Some(Ramp { length: 0.25, factor: 0.5 });
+    for piece in pieces.iter_mut().step_by(2) {
+        (piece.start, piece.end) = (ramp, ramp);
+    }
+    (header, pieces)
+}
+
+/// Shapes one behind the other from the point `at`, with the ways of z.
+fn chain(
+    header: Header<f32>,
+    mut at: [Fixed; 2],
+    feed: f32,
+    shapes: impl IntoIterator<Item = (Shape<f32>, Option<Travel>)>,
+) -> (Header<f32>, Vec<Piece<f32>>) {
+    let mut pieces: Vec<Piece<f32>> = Vec::new();
+    for (shape, further) in shapes {
         let interval = [0.0, 1.0];
-        let mut piece =
-            Piece { origin: at, shape, interval, feed: 25.0, start: None, end: None, further: None, last: None };
+        let mut piece = Piece { origin: at, shape, interval, feed, start: None, end: None, further, last: None };
         let Some([start, _]) = ends(&header, &piece) else { return (header, Vec::new()) };
         for (origin, (at, start)) in piece.origin.iter_mut().zip(at.into_iter().zip(start)) {
             origin.0 += at.0 - start.0;
@@ -136,8 +188,9 @@ pub fn all_ways() -> (Header<f32>, Vec<Piece<f32>>) {
         at = end;
         pieces.push(piece);
     }
+    let z = pieces.iter().rev().find_map(|piece| piece.further).map_or(Fixed(0), |travel| travel.to[0]);
     if let Some(last) = pieces.last_mut() {
-        last.last = Some([at[0], at[1], Fixed(0)]);
+        last.last = Some([at[0], at[1], z]);
     }
     (header, pieces)
 }

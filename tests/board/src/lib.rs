@@ -14,6 +14,7 @@
 //! | [`serve`](mod@serve) | the board behind that listener, in real time |
 //! | [`stages`] | which source file each executed instruction came from |
 //! | [`reach`] | what the tick can call, from the machine code |
+//! | [`calls`] | counts the instructions of a function that the program calls outside the tick |
 //! | [`jobs`] | small jobs of one kind of piece each, for budgets |
 //! | [`budget`] | all figures of an image together |
 //!
@@ -23,6 +24,7 @@
 #![deny(missing_docs)]
 
 pub mod budget;
+pub mod calls;
 pub mod image;
 pub mod jobs;
 pub mod line;

@@ -11,6 +11,7 @@ use rigless::time::VirtualNanos;
 use shared::control::PathEnd;
 
 use crate::Error;
+use crate::calls::{Call, Calls};
 use crate::image::{Image, Instruction, MAILBOX};
 use crate::line::{Shared, Talker, lock};
 use crate::machine::Machine;
@@ -79,6 +80,8 @@ pub struct Seen {
     pub known: u8,
     /// When the controller was started again, in ns, and by what.
     pub restarts: Vec<(u64, String)>,
+    /// The calls of a function that was watched: see [`Probe::count_calls`].
+    pub calls: Vec<Call>,
 }
 
 /// What the mailbox says of the machine as a whole.
@@ -112,6 +115,7 @@ pub struct Probe {
     deadline: VirtualNanos,
     counted: Vec<u32>,
     count_range: Range<u32>,
+    pub(crate) calls: Option<Calls>,
     /// The instruction count at the handler's first instruction, while it runs.
     entered: Option<u64>,
     /// The stack pointer there.
@@ -147,6 +151,7 @@ impl Probe {
             deadline: VirtualNanos((seconds * 1e9) as u64),
             counted: Vec::new(),
             count_range: 0..0,
+            calls: None,
             entered: None,
             stack_pointer: None,
             ran: Vec::new(),
@@ -164,6 +169,11 @@ impl Probe {
     pub fn count_instructions(&mut self, instructions: Vec<u32>, range: Range<u32>) {
         self.counted = instructions;
         self.count_range = range;
+    }
+
+    /// Watches the calls of a function outside the tick. The run is slow while it is called.
+    pub fn count_calls(&mut self, calls: Calls) {
+        self.calls = Some(calls);
     }
 
     /// Looks at the pins of step drivers in every slot. The run is slow then.
@@ -189,7 +199,9 @@ impl Probe {
 
     /// Asks the session to stop where this probe wants to look, and to come back in time.
     pub fn watch(&self, session: &mut Session<Stm32h743Bench>) {
-        let all: BTreeSet<u32> = [self.entry].iter().chain(&self.ends).chain(&self.counted).copied().collect();
+        let calls = self.calls.iter().flat_map(Calls::addresses);
+        let all: BTreeSet<u32> =
+            [self.entry].iter().chain(&self.ends).chain(&self.counted).chain(calls).copied().collect();
         for address in all {
             session.watch(Watch::Instruction(u64::from(address)));
         }
@@ -197,6 +209,9 @@ impl Probe {
     }
 
     fn hit(&mut self, host: &mut dyn Host, address: u32, hit: Hit) {
+        if let Some(calls) = &mut self.calls {
+            calls.hit(address, hit.instruction_count);
+        }
         if address == self.entry {
             self.entered = Some(hit.instruction_count);
             self.ran.clear();

@@ -1,4 +1,4 @@
-//! What the tick can call, from the machine code of the linked image.
+//! What the tick can call, or another function, from the machine code of the linked image.
 //!
 //! From the interrupt's handler, every direct call and every jump out of a function is followed. Calls through a register cannot be: they
 //! are listed, and a tick has to do without them. A jump through a table stays in its function and is none.
@@ -11,7 +11,7 @@ use crate::image::{Function, Image, Instruction};
 /// What was found.
 #[derive(Clone, Debug, Default)]
 pub struct Reach {
-    /// Every function that the tick can reach, the handler first.
+    /// Every function that can be reached, the first one first.
     pub functions: Vec<Function>,
     /// Where a call goes through a register: the function and the address.
     pub indirect: Vec<(String, u32)>,
@@ -22,9 +22,14 @@ pub struct Reach {
 impl Reach {
     /// Follows every call from the tick's handler.
     pub fn of_tick(image: &Image) -> Result<Self, Error> {
+        Ok(Self::of(image, image.tick_handler()?))
+    }
+
+    /// Follows every call from `function`.
+    pub fn of(image: &Image, function: &Function) -> Self {
         let mut reach = Self::default();
         let mut seen = BTreeSet::new();
-        let mut waiting = vec![image.tick_handler()?.clone()];
+        let mut waiting = vec![function.clone()];
         while let Some(function) = waiting.pop() {
             if !seen.insert(function.range.start) {
                 continue;
@@ -43,7 +48,7 @@ impl Reach {
             }
             reach.functions.push(function);
         }
-        Ok(reach)
+        reach
     }
 
     /// Reached functions that no tick may reach: double precision in software, and everything that panics.
@@ -58,7 +63,7 @@ impl Reach {
         self.functions.iter().map(|function| function.name.as_str()).filter(is_forbidden).collect()
     }
 
-    /// All instructions that the tick can reach.
+    /// All instructions that can be reached.
     pub fn instructions(&self, image: &Image) -> Vec<u32> {
         let all = self.functions.iter().flat_map(|function| image.instructions(function));
         all.map(|instruction| instruction.address).collect()

@@ -60,8 +60,9 @@ pub fn run(
     let mut probe = Probe::new(image, machine, talker, seconds)?;
     prepare(&mut probe);
     probe.watch(&mut session);
-    let (Probe { mut seen, machine, .. }, restarts) = execute(image, mounting, session, probe)?;
+    let (Probe { mut seen, machine, calls, .. }, restarts) = execute(image, mounting, session, probe)?;
     seen.restarts = restarts;
+    seen.calls = calls.map(|calls| calls.seen).unwrap_or_default();
     Ok((seen, machine))
 }
 

@@ -18,7 +18,10 @@ pub const STAGES: [(&str, &[&str]); 9] = [
     ("pace", &["shared/src/pace/mod.rs", "shared/src/pace/lattice.rs"]),
     ("interpolator", &["shared/src/interpolator.rs", "shared/src/accumulator.rs"]),
     ("feed law", &["shared/src/feed.rs"]),
-    ("curve", &["shared/src/active.rs", "shared/src/active/ph.rs", "shared/src/further.rs"]),
+    (
+        "curve",
+        &["shared/src/active.rs", "shared/src/active/ph.rs", "shared/src/active/spline.rs", "shared/src/further.rs"],
+    ),
     ("servo", &["shared/src/servo.rs"]),
     ("safety", &["shared/src/safety/mod.rs", "shared/src/safety/table.rs", "shared/src/safety/debounce.rs"]),
     ("control", &["shared/src/control/mod.rs", "shared/src/control/axes.rs"]),
@@ -56,6 +59,18 @@ impl Stages {
             }
         }
         "rest"
+    }
+
+    /// Whether the instruction at `address` belongs to a function that contains one of `names`, itself or in what it was inlined into.
+    pub fn is_within(&self, address: u32, names: &[&str]) -> bool {
+        let Ok(mut frames) = self.loader.find_frames(u64::from(address)) else { return false };
+        while let Ok(Some(frame)) = frames.next() {
+            let name = frame.function.as_ref().and_then(|name| name.demangle().ok()).unwrap_or_default();
+            if names.iter().any(|part| name.contains(part)) {
+                return true;
+            }
+        }
+        false
     }
 
     /// Instructions per stage and tick, rounded, of the counts of executed instructions over `ticks` ticks.

@@ -13,7 +13,7 @@ use shared::error::PathError;
 use shared::feed::Ramp;
 use shared::fixed::Fixed;
 use shared::link::{Command, FRAME_SIZE, FrameError, LinkError, NO_SESSION, Refusal, Report, VERSION, encode};
-use shared::piece::{Header, Order, Piece, Shape};
+use shared::piece::{Header, Order, Piece, Shape, SplineShape};
 use shared::safety::Coordinates;
 
 /// Long enough for the answer to come back and for many ticks to show what they do.
@@ -142,6 +142,33 @@ fn faulty_pieces_are_refused() {
         Shape::Ph { preimage: [Complex::new(1.0, 0.0), Complex::new(0.0, 1.0), Complex::new(0.0, 0.0)], offset: -0.5 };
     let (header, pieces) = changed(Kind::Ph, |piece| piece.shape = cusp);
     assert_eq!(refusal_of(&image, header, &pieces), Refusal::Path(PathError::Cusp));
+}
+
+#[test]
+fn faulty_splines_are_refused() {
+    let image = image();
+    let refusal = |change: &dyn Fn(&mut SplineShape<f32>)| {
+        let (header, pieces) = changed(Kind::Spline, |piece| {
+            let Shape::Spline(shape) = &mut piece.shape else { panic!("another shape") };
+            change(shape);
+        });
+        refusal_of(&image, header, &pieces)
+    };
+    let plane = |coefficients: [(f32, f32); 3]| {
+        let [a, b, c] = coefficients.map(|(x, y)| Complex::new(x, y));
+        [a, b, c, Complex::ZERO, Complex::ZERO]
+    };
+    // (v^2, v^3) in units of 10 mm stands still at its cusp.
+    let cusp = plane([(0.0, 0.0), (10.0, 0.0), (0.0, 10.0)]);
+    assert_eq!(refusal(&|shape| shape.plane = cusp), Refusal::Path(PathError::Standstill));
+    // 100 times as fast at its ends as in the middle, where it does not stand still.
+    let uneven = plane([(0.1, 0.0), (0.0, 0.0), (13.2, 0.0)]);
+    assert_eq!(refusal(&|shape| shape.plane = uneven), Refusal::Path(PathError::Uneven));
+    for number in [f32::NAN, f32::INFINITY] {
+        assert_eq!(refusal(&|shape| shape.plane[4].im = number), Refusal::Path(PathError::NotFinite));
+    }
+    // z bends, and nobody says between which ends.
+    assert_eq!(refusal(&|shape| shape.bow[0] = 1.0), Refusal::Path(PathError::Bow));
 }
 
 /// A frame that did not arrive whole is answered with what is expected, and the same command is taken when it comes again.

@@ -2,28 +2,47 @@
 
 mod common;
 
+use board::jobs::splines;
 use board::run::run_job;
-use common::{image, root, servos};
+use common::{image, root, servos, start_of};
 use host_sim::job::{FeedOverride, Job, Reduction};
 use host_sim::path::Path;
 use host_sim::simulate;
-use shared::piece::Order;
+use host_sim::simulate::Queue;
+use shared::executor::{Executor, State};
+use shared::fixed::Fixed;
+use shared::hash::SetpointHash;
+use shared::piece::{Header, Order, Piece};
 
 /// Runs `job` on both and compares every tick. Returns the number of ticks.
 fn compare(job: &Job, order: Order, name: &str) -> usize {
     let path = Path::new(job, order).unwrap();
     let mut host = Vec::new();
     let outcome = simulate::run(&path, |_, executor| host.push(executor.setpoint().map(|axis| axis.0))).unwrap();
-    let target = run_job(&image(), &servos(), path.header, path.wire().collect(), outcome.time, |_| {}).unwrap();
+    let hash = outcome.hash.value();
+    compare_with(&Host { setpoints: host, hash, time: outcome.time }, path.header, path.wire().collect(), name)
+}
+
+/// What the host made of a path: the setpoint of every tick, their hash, and the time in s.
+struct Host {
+    setpoints: Vec<[i32; 3]>,
+    hash: u64,
+    time: f64,
+}
+
+/// Runs the pieces of a path on the target and compares every tick. Returns the number of ticks.
+fn compare_with(host: &Host, header: Header<f32>, pieces: Vec<Piece<f32>>, name: &str) -> usize {
+    let Host { setpoints: host, hash: expected, time: expected_time } = host;
+    let target = run_job(&image(), &servos(), header, pieces, *expected_time, |_| {}).unwrap();
 
     let found: Vec<_> = target.seen.ticks.iter().map(|tick| tick.setpoint).collect();
     let first = host.iter().zip(&found).position(|(host, target)| host != target);
     assert_eq!(first, None, "{name}: the first tick that differs");
     assert_eq!(found.len(), host.len(), "{name}: ticks");
     let (ticks, residual, hash) = target.finished;
-    assert_eq!((u64::from(ticks), hash), (outcome.ticks, outcome.hash.value()), "{name}: ticks and hash as reported");
+    assert_eq!((ticks as usize, hash), (host.len(), *expected), "{name}: ticks and hash as reported");
     let time = f64::from(ticks) * f64::from(shared::TICK) - f64::from(residual);
-    assert_eq!(time, outcome.time, "{name}: time");
+    assert_eq!(time, *expected_time, "{name}: time");
     assert_eq!(target.resent, 0, "{name}: commands sent twice over a good line");
     host.len()
 }
@@ -73,5 +92,41 @@ fn lines_and_arcs() {
     let job = Job::read(name.to_str().unwrap()).unwrap();
     for order in [Order::First, Order::Second, Order::Third, Order::Exact] {
         assert!(compare(&job, order, &format!("bracket, {order:?}")) > 1_000);
+    }
+}
+
+/// The executor over pieces that no job has, all of them at hand from the start.
+fn on_host(header: &Header<f32>, pieces: &[Piece<f32>]) -> Host {
+    let mut queue = Queue::new(header, pieces.iter().copied(), usize::MAX).unwrap();
+    queue.fill();
+    let [x, y, _] = start_of(header, pieces);
+    let z = pieces[0].further.unwrap().from[0];
+    let mut executor = Executor::new(shared::TICK, [x, y, z]);
+    executor.begin(queue.motion());
+    let (mut hash, mut setpoints) = (SetpointHash::new(), Vec::new());
+    while executor.state() != State::Finished {
+        let setpoint = executor.tick(&mut queue);
+        hash.add(setpoint);
+        setpoints.push(setpoint.map(|axis| axis.0));
+    }
+    let time = setpoints.len() as f64 * f64::from(shared::TICK) - f64::from(executor.spare_time());
+    Host { setpoints, hash: hash.value(), time }
+}
+
+/// Polynomial splines, each fitted where it is loaded, on the host and on the target: cubics and quintics of the orders five, seven and
+/// nine, in the plane and in space, beside a line and a PH curve.
+#[test]
+fn polynomial_splines() {
+    for order in [Order::First, Order::Second, Order::Third, Order::Exact] {
+        let (header, pieces) = splines(order);
+        let host = on_host(&header, &pieces);
+        // z rises from 1 to 3.5 mm by a bow that goes beyond, and comes back to 2 mm.
+        let z = |of: fn(f64, f64) -> f64| {
+            host.setpoints.iter().map(|setpoint| Fixed(setpoint[2]).to_mm()).reduce(of).unwrap()
+        };
+        assert!(z(f64::min) >= 1.0 && z(f64::max) > 3.6, "{} to {} mm", z(f64::min), z(f64::max));
+        assert_eq!(host.setpoints.last().unwrap()[2], Fixed::from_mm(2.0).0);
+        let ticks = compare_with(&host, header, pieces, &format!("splines, {order:?}"));
+        assert!(ticks > 1_000, "{ticks}");
     }
 }
