@@ -242,6 +242,7 @@ mod tests {
     use super::*;
     use crate::active::ActivePiece;
     use crate::further::Travel;
+    use crate::spline::CorrectionOrder;
 
     fn piece<T: Real>(shape: Shape<T>) -> Piece<T> {
         Piece {
@@ -325,6 +326,59 @@ mod tests {
                 }
             }
         }
+    }
+
+    proptest! {
+        /// The same of a spline in space, z included, in f32 as in f64.
+        #[test]
+        fn the_box_of_a_spline_holds_every_point(
+            plane in prop::array::uniform10(number()), bow in prop::array::uniform4(number()), rise in number(),
+        ) {
+            let [a, b, c, d, e, f, g, h, i, j] = plane;
+            let exact = SplineShape {
+                plane: [(a, b), (c, d), (e, f), (g, h), (i, j)].map(|(x, y)| Complex::new(x, y)),
+                bow,
+                correction: CorrectionOrder::Seventh,
+            };
+            let single = SplineShape {
+                plane: exact.plane.map(|z| Complex::new(z.re as f32, z.im as f32)),
+                bow: bow.map(|b| b as f32),
+                correction: exact.correction,
+            };
+            let (wide, narrow) = (piece(Shape::Spline(exact)).extent(), piece(Shape::Spline(single)).extent());
+            let ([low, high], [single_low, single_high]) = (super::bow(&exact, rise), super::bow(&single, rise as f32));
+            let (space, single_space) = (exact.segment(rise), single.segment(rise as f32));
+            let (end, single_end) = (space.point(0.5)[2], single_space.point(0.5)[2]);
+            for k in -200..=200 {
+                let [x, y, z] = space.point(f64::from(k) * 2.5e-3);
+                prop_assert!(x >= wide.low[0] && x <= wide.high[0] && y >= wide.low[1] && y <= wide.high[1]);
+                prop_assert!(z - end >= low && z - end <= high, "{z} {end} {low} {high}");
+                let [x, y, z] = single_space.point(k as f32 * 2.5e-3);
+                prop_assert!(x >= narrow.low[0] && x <= narrow.high[0] && y >= narrow.low[1] && y <= narrow.high[1]);
+                prop_assert!(z - single_end >= single_low && z - single_end <= single_high);
+            }
+        }
+    }
+
+    /// A spline that ends where it starts in z, and bows beyond the travel between.
+    #[test]
+    fn a_bow_beyond_the_travel_is_told() {
+        let travel = SoftLimits {
+            plane: [[Fixed(-1 << 30), Fixed(1 << 30)]; 2],
+            further: [[-20.0_f64, 0.0].map(Fixed::from_mm)],
+        };
+        let mut plane = [Complex::<f32>::ZERO; 5];
+        plane[0] = Complex::new(30.0, 0.0);
+        let arched = |height: f32| {
+            let shape = SplineShape { plane, bow: [4.0 * height, 0.0, 0.0, 0.0], correction: CorrectionOrder::Seventh };
+            let at = Fixed::from_mm(-1.0_f64);
+            Piece { further: Some(Travel { from: [at], to: [at] }), ..piece(Shape::Spline(shape)) }
+        };
+        assert_eq!(travel.check(&arched(0.9)), Ok(()));
+        let Err(PathError::SoftLimit { axis: 2, beyond }) = travel.check(&arched(1.5)) else {
+            panic!("it stays within")
+        };
+        assert!((beyond - 0.5).abs() < 0.02, "{beyond}");
     }
 
     /// On a curve as people draw it the box is wider than the curve by less than a hundredth of its size.

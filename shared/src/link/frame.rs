@@ -163,8 +163,9 @@ mod tests {
     use crate::feed::Ramp;
     use crate::fixed::Fixed;
     use crate::further::Travel;
-    use crate::piece::{Piece, Shape};
+    use crate::piece::{Piece, Shape, SplineShape};
     use crate::safety::{Fault, HomingFault, State};
+    use crate::spline::CorrectionOrder;
 
     fn piece(x: f32, origin: i32) -> Piece<f32> {
         let w = Complex::new(x, -x);
@@ -198,6 +199,14 @@ mod tests {
     #[test]
     fn every_message_fits() {
         let frame = encode(SESSION, u16::MAX, &Command::Piece(piece(f32::MAX, i32::MAX))).unwrap();
+        let spline = SplineShape {
+            plane: [Complex::new(f32::MAX, f32::MIN); 5],
+            bow: [f32::MAX; 4],
+            correction: CorrectionOrder::Ninth,
+        };
+        let longest = Piece { shape: Shape::Spline(spline), ..piece(f32::MAX, i32::MAX) };
+        let longest = encode(SESSION, u16::MAX, &Command::Piece(longest)).unwrap();
+        assert!(longest.len() <= FRAME_SIZE, "a spline: {}", longest.len());
         assert!(frame.len() < FRAME_SIZE);
         let telemetry = Telemetry {
             machine: State::EStop,
