@@ -17,8 +17,9 @@ fn tables_and_pictures_are_written() {
         assert!(row["name"].is_string() && row["published"].is_number() && row["measured"].is_number());
     }
     let html = std::fs::read_to_string(report).unwrap();
-    // Both curves, and every run.
-    assert_eq!(html.matches("<svg").count(), 2 + result["runs"].as_array().unwrap().len());
+    // Both curves, and every run but the iterative ones, which depart by rounding only.
+    let methods = result["runs"].as_array().unwrap().iter().map(|run| run["method"].as_str().unwrap());
+    assert_eq!(html.matches("<svg").count(), 2 + methods.filter(|method| *method != "iterative").count());
     let text = run("reproduce", Path::new("feed-correction"), &[]);
     let text = String::from_utf8(text.stdout).unwrap();
     for words in ["fan: mean M", "seventh order, two samples", "84 M + 7", "the rule's nodes"] {

@@ -38,9 +38,7 @@ pub fn feed_correction(result: &Reproduction) -> Result<String, ReportError> {
         Layout::Single,
         "As the paper's figure 4(a): a closed C2 cubic spline through 88 points, parametrised by chord length. Dots are its nodes.",
     );
-    for run in result.runs.iter().filter(|run| run.curve == "fan") {
-        page.figure(&[chart(run)?], Layout::Single, &caption(run));
-    }
+    charts(&mut page, result, "fan")?;
     page.heading("The airfoil");
     page.figure(
         &[path("The 48 segments of the airfoil", &result.section)?],
@@ -48,9 +46,7 @@ pub fn feed_correction(result: &Reproduction) -> Result<String, ReportError> {
         "As the paper's figure 7(a): a C3 quintic spline, nearly parametrised by arc length. The paper's section is not published with \
          coordinates; this one is another. It is drawn at a chord of 6 inches.",
     );
-    for run in result.runs.iter().filter(|run| run.curve == "airfoil") {
-        page.figure(&[chart(run)?], Layout::Single, &caption(run));
-    }
+    charts(&mut page, result, "airfoil")?;
     page.heading("What the fits cost");
     page.paragraph(
         "Operations are counted by a number that counts what is done with it. A line of the paper's Table 2 is one function of the code; \
@@ -79,6 +75,19 @@ fn facts(result: &Reproduction) -> Vec<(&'static str, String, &'static str)> {
         ("Time of the closed form over the 14 equations", number(times.centred / times.fourteen, 3), ""),
         ("Time of two samples over the 14 equations", number(times.two_samples / times.fourteen, 4), ""),
     ]
+}
+
+/// A chart a run on this curve; a run that departs by rounding only has nothing to show.
+fn charts(page: &mut Page, result: &Reproduction, curve: &str) -> Result<(), ReportError> {
+    const ROUNDING_PERCENT: f64 = 1e-6;
+    for run in result.runs.iter().filter(|run| run.curve == curve) {
+        if run.largest() > ROUNDING_PERCENT {
+            page.figure(&[chart(run)?], Layout::Single, &caption(run));
+        } else {
+            page.paragraph(&format!("The feed of the method \u{201c}{}\u{201d} departs by rounding only.", run.method));
+        }
+    }
+    Ok(())
 }
 
 fn caption(run: &Run) -> String {
@@ -122,28 +131,40 @@ fn chart(run: &Run) -> Result<Picture, ReportError> {
     .draw()
 }
 
-fn table(head: &[&str], rows: impl Iterator<Item = (&'static str, Vec<String>)>) -> String {
-    let cells = |tag: &str, cells: &[String]| -> String {
-        cells.iter().map(|cell| format!("<{tag}>{}</{tag}>", escape(cell))).collect()
+/// A table whose first `words` columns and, where there is a last one with reasons, that one hold words; the others hold numbers.
+fn table(
+    head: &[&str],
+    words: usize,
+    reasons: bool,
+    rows: impl Iterator<Item = (&'static str, Vec<String>)>,
+) -> String {
+    let last = head.len() - 1;
+    let cell = |tag: &str, (column, text): (usize, &str)| {
+        let is_word = column < words || (reasons && column == last);
+        let style = if is_word { " style=\"text-align: left; white-space: normal\"" } else { "" };
+        format!("<{tag}{style}>{}</{tag}>", escape(text))
     };
-    let head: Vec<String> = head.iter().map(|name| (*name).to_string()).collect();
-    let body: String = rows.map(|(style, row)| format!("<tr style=\"{style}\">{}</tr>", cells("td", &row))).collect();
-    format!(
-        "<div class=\"scroll\"><table><thead><tr>{}</tr></thead><tbody>{body}</tbody></table></div>",
-        cells("th", &head)
-    )
+    let head: String = head.iter().copied().enumerate().map(|named| cell("th", named)).collect();
+    let row = |(style, row): (&str, Vec<String>)| {
+        let cells: String = row.iter().map(String::as_str).enumerate().map(|text| cell("td", text)).collect();
+        format!("<tr style=\"{style}\">{cells}</tr>")
+    };
+    let body: String = rows.map(row).collect();
+    format!("<div class=\"scroll\"><table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table></div>")
 }
 
 fn rows(result: &Reproduction) -> String {
     let row = |row: &crate::reproduce::Row| {
         ("", vec![row.name.clone(), three_figures(row.published), three_figures(row.measured)])
     };
-    table(&["", "published", "here"], result.rows.iter().map(row))
+    table(&["", "published", "here"], 1, false, result.rows.iter().map(row))
 }
 
 fn terms(result: &Reproduction) -> String {
     table(
         &["equation", "term", "published * / + -", "here * / + -", "why they differ"],
+        2,
+        true,
         result.terms.iter().map(|term| {
             let [m, d, a, s] = term.published;
             let here = &term.counted;
@@ -163,6 +184,8 @@ fn terms(result: &Reproduction) -> String {
 fn totals(result: &Reproduction) -> String {
     table(
         &["operations a segment", "M", "published", "here", "why they differ"],
+        1,
+        true,
         result.totals.iter().map(|total| {
             let published = total.published.map_or("-".to_string(), |published| published.to_string());
             let (divisions, here) = (total.divisions.to_string(), total.counted.sum().to_string());
@@ -174,6 +197,8 @@ fn totals(result: &Reproduction) -> String {
 fn sparse(result: &Reproduction) -> String {
     table(
         &["samples", "at", "Gauss nodes between two", "fluctuation on the fan, %", "operations"],
+        0,
+        false,
         result.sparse.iter().map(|row| {
             let fluctuation = number(row.fluctuation_percent, 5);
             let cells = [
