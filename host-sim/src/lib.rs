@@ -14,6 +14,7 @@
 //! | [`approach`] | the way to where a job begins |
 //! | [`machine`] | a machine's file, and what a controller makes of it |
 //! | [`pacing`] | how fast the pace of a path may change within what the axes bear |
+//! | [`plan`] | how fast a path may be run within the limits of a machine |
 //! | [`prepare`] | a checked job as bytes, for a sender |
 //! | [`plant`] | motors, screws, friction, encoders: what hangs on the axes |
 //! | [`simulate`] | the tick of `shared` over a path, with or without a plant |
@@ -38,6 +39,7 @@ pub mod monitor;
 pub mod offset;
 pub mod pacing;
 pub mod path;
+pub mod plan;
 pub mod plant;
 pub mod prepare;
 pub mod report;
