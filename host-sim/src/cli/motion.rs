@@ -4,6 +4,7 @@ use clap::{Args, ValueEnum};
 use host_sim::input::InputError;
 use host_sim::job::{FeedOverride, Job, Reduction};
 use host_sim::path::Path;
+use shared::machine::MachineSettings;
 use shared::piece::Order;
 
 /// A job and what the command line says of its motion.
@@ -31,7 +32,7 @@ pub struct Motion {
     /// How a tick integrates the feed law
     #[arg(long, value_enum, default_value_t = OrderName::First)]
     order: OrderName,
-    /// The machine that shall run it: a job that leaves the machine's travel is refused
+    /// The machine that shall run it: a job that leaves the machine's travel is refused, and a simulation says what it asks of the axes
     #[arg(long, value_name = "MACHINE.toml")]
     machine: Option<String>,
     #[command(flatten)]
@@ -56,6 +57,11 @@ pub enum OrderName {
 }
 
 impl Motion {
+    /// The machine that was named.
+    pub fn machine(&self) -> Result<Option<MachineSettings>, InputError> {
+        self.machine.as_deref().map(host_sim::machine::read).transpose()
+    }
+
     /// Reads the job and makes its path.
     pub fn path(&self) -> Result<(Job, Path), InputError> {
         let by = FeedOverride { rate: self.feed, weight: self.weight, reduction: self.reduction, ramp: self.ramp };

@@ -4,12 +4,15 @@ use std::io::Write;
 
 use clap::Args;
 use host_sim::job::{Job, Units};
+use host_sim::measure::peaks::Verdict;
 use host_sim::path::Path;
+use host_sim::plan::{Demand, Recorder};
 use host_sim::plant::{Measured, Plant};
 use host_sim::report;
 use host_sim::simulate::{
     Action, Carried, Entry, Outcome, SETTLING_TICKS, Sample, Script, percent_from, simulate_script,
 };
+use serde::Serialize;
 use shared::motion::MotionCommand;
 
 use super::Failure;
@@ -59,7 +62,10 @@ impl Simulate {
     pub fn run(self) -> Result<(), Failure> {
         let (job, path) = self.motion.path()?;
         let plant = self.plant.as_deref().map(super::read_plant).transpose()?;
-        let (outcome, samples) = self.simulate(&job, &path, plant)?;
+        let machine = self.motion.machine()?;
+        let mut recorder = machine.as_ref().map(|_| Recorder::new(&path));
+        let (outcome, samples) = self.simulate(&job, &path, plant, recorder.as_mut())?;
+        let demand = recorder.zip(machine).and_then(|(recorder, machine)| recorder.demand(&machine, job.units));
         if let Some(name) = &self.report {
             let html = report::simulation(&job, &path, &outcome, &samples).map_err(|error| failed(name, error))?;
             write(name, html.as_bytes())?;
@@ -69,10 +75,13 @@ impl Simulate {
             write(name, svg.as_bytes())?;
         }
         if let Some(name) = &self.json {
-            json(name, &outcome)?;
+            json(name, &Found { outcome: &outcome, demand: demand.as_ref() })?;
         }
         if self.json.as_deref() != Some("-") {
             print(&outcome);
+            if let Some(demand) = &demand {
+                print_demand(demand, job.units);
+            }
         }
         Ok(())
     }
@@ -84,7 +93,13 @@ impl Simulate {
         Script { entries, queue: self.queue.map(|queue| queue as usize) }
     }
 
-    fn simulate(&self, job: &Job, path: &Path, plant: Option<Plant>) -> Result<(Outcome, Vec<Sample>), Failure> {
+    fn simulate(
+        &self,
+        job: &Job,
+        path: &Path,
+        plant: Option<Plant>,
+        mut recorder: Option<&mut Recorder<'_>>,
+    ) -> Result<(Outcome, Vec<Sample>), Failure> {
         let mut trace = self.trace.as_deref().map(create).transpose()?;
         let mut setpoints = self.setpoints.as_deref().map(create).transpose()?;
         if let Some(out) = &mut trace {
@@ -104,6 +119,9 @@ impl Simulate {
             }
             if keep {
                 samples.push(*sample);
+            }
+            if let Some(recorder) = &mut recorder {
+                recorder.record(sample.commanded, sample.piece);
             }
             if written.is_ok() {
                 written = write_sample(&mut trace, &mut setpoints, sample, job.units);
@@ -125,6 +143,42 @@ impl Simulate {
         let outcome = outcome.ok_or_else(|| Failure::Run(format!("{}: the path does not end", job.name())))?;
         Ok((outcome, samples))
     }
+}
+
+/// What `--json` writes.
+#[derive(Serialize)]
+struct Found<'a> {
+    #[serde(flatten)]
+    outcome: &'a Outcome,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    demand: Option<&'a Demand>,
+}
+
+/// What the run asks of the machine, quantity by quantity.
+fn print_demand(demand: &Demand, units: Units) {
+    let unit = units.short();
+    println!("asked of the machine");
+    for axis in &demand.axes {
+        for (name, asked, per) in
+            [("velocity", &axis.velocity, "s"), ("acceleration", &axis.acceleration, "s2"), ("jerk", &axis.jerk, "s3")]
+        {
+            let percent = 100.0 * asked.peak / asked.limit;
+            let verdict = match asked.verdict {
+                Verdict::Kept => "",
+                Verdict::Exceeded => ", MORE THAN IT BEARS",
+                Verdict::Open => ", not certain",
+            };
+            println!(
+                "  {} {name:13} {:>12.1} of {:.1} {unit}/{per}, {percent:.0} % at {:.3} s{verdict}",
+                axis.axis, asked.peak, asked.limit, asked.at_s
+            );
+        }
+        println!("  {} corner step   {:>12.1} {unit}/s", axis.axis, axis.corner_step);
+    }
+    println!(
+        "  least time    {:>14.3} s within its velocities and accelerations, at the job's feed and these corner steps",
+        demand.least_time_s
+    );
 }
 
 type Csv = Option<Box<dyn Write>>;
