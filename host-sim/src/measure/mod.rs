@@ -6,6 +6,7 @@ mod foot_point;
 mod integral;
 mod nearest;
 mod path_distance;
+pub mod peaks;
 mod quintic;
 mod touching;
 
