@@ -122,7 +122,7 @@ mod tests {
         let machine = crate::machine::from_toml("machine.toml", machine).unwrap();
         let mut recorder = Recorder::new(&path);
         run(&path, |_, executor| {
-            recorder.record(executor.setpoint(), executor.place().map_or(0, |place| place.piece as usize - 1));
+            recorder.record(executor.setpoint(), executor.place().map_or(0, |place| place.piece as usize));
         })
         .unwrap();
         recorder.demand(&machine, job.units).unwrap()
