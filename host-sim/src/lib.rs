@@ -23,7 +23,7 @@
 //! | [`stream`] | a job over a transport |
 //! | [`session`] | one question after another over a transport |
 //! | [`monitor`] | a look at a controller |
-//! | [`measure`] | contour error and exact time, independent of the kernel |
+//! | [`measure`] | contour error, exact time and peaks of a motion, independent of the kernel |
 //! | [`trimming`] | what an offset comes to, in the units of its file |
 //! | [`reproduce`] | published experiments beside their published figures |
 //! | [`report`] | pictures and tables of results in one HTML file |

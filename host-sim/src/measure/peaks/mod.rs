@@ -18,16 +18,20 @@
 //! | 2 | 8 / h^2 mm/s^2 | 100 mm/s^2: 6, 11.7 ms; 1000: 2, 3.9 ms; 10^4: 1, 2.0 ms |
 //! | 3 | 16384 / h^3 mm/s^3 | 1000 mm/s^3: 19, 55.7 ms; 10^4: 9, 26.4 ms; 10^5: 5, 14.6 ms; 10^6: 2, 5.9 ms |
 //!
+//! Setpoints of the controller are computed in singles first. With pieces up to 60 mm from start to end that does not show; with
+//! the 116 mm of `examples/farouki2018.toml` e is 2.34 units at least, the noise 4.7 times the table's, a stride for jerk 1.7
+//! times its (test `singles_show_on_long_pieces`). Give [`Standard::rounding`] 4 units there.
+//!
 //! The stride is chosen for each limit, since no one stride serves: at h = 1 a jerk is noise, at h = 19 a short one is gone.
 //!
 //! # What the difference does to a peak
 //!
 //! D is the mean of the derivative under a weight that is nowhere negative (the B-spline of order n, n h T wide). Apart from
 //! noise it therefore never exceeds the true peak: what exceeds a limit by more than the noise is a violation, however rough the
-//! motion is. It may fall short of the peak. Where the derivative has a second derivative B of its own it is off by n (h T)^2 B/24; a rectangle of
-//! acceleration that lasts 2 h T or longer shows whole and one of h T with 75 %; a rectangle of jerk of 3 h T shows whole, of
-//! 2 h T with 96 %, of h T with 67 %. Hence [`Peak::proven`] also asks the strides 1, 2, 4 .. below the chosen one: a short peak
-//! that stands out of their larger noise is found too.
+//! motion is. It may fall short of the peak. Where the derivative has a second derivative B of its own it is off by
+//! n (h T)^2 B/24; a rectangle of acceleration that lasts 2 h T or longer shows whole and one of h T with 75 %; a rectangle of
+//! jerk of 3 h T shows whole, of 2 h T with 96 %, of h T with 67 %. Hence [`Peak::proven`] also asks the strides 1, 2, 4 .. below
+//! the chosen one: a short peak that stands out of their larger noise is found too.
 //!
 //! # Why not a polynomial of least squares
 //!
@@ -78,8 +82,8 @@ pub struct Standard {
     pub centripetal: f64,
     /// The part of a limit that noise may reach; above 0.
     pub share: f64,
-    /// The largest error of a coordinate of a setpoint, in mm: [`ROUNDING`], or more where it was computed less exactly than it
-    /// was rounded.
+    /// The largest error of a coordinate of a setpoint, in mm. [`ROUNDING`] for what is computed in doubles; the controller's
+    /// singles add to it on pieces that reach far from their start, as the module says.
     pub rounding: f64,
 }
 

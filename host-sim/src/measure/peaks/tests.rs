@@ -2,8 +2,12 @@ use std::f64::consts::FRAC_PI_4;
 
 use proptest::prelude::*;
 use shared::fixed::Fixed;
+use shared::piece::Order;
 
 use super::*;
+use crate::job::Job;
+use crate::path::Path;
+use crate::simulate::run;
 
 const UNLIMITED: Limits = Limits { velocity: f64::INFINITY, acceleration: f64::INFINITY, jerk: f64::INFINITY };
 
@@ -198,6 +202,33 @@ fn short_inputs_and_odd_limits_are_no_trouble() {
         }
         let jerk = peaks(&setpoints, &[], &Standard::new([limits(10.0, 1e3, 1e3); 3])).axes[0].jerk;
         assert_eq!((jerk.verdict, jerk.unjudged), (Verdict::Open, if count < 4 { count } else { 0 }));
+    }
+}
+
+/// Sixth differences of a smooth motion are all but noise, and with weights of 64 in sum they show the least that e can be.
+#[test]
+fn singles_show_on_long_pieces() {
+    for (name, least, most) in
+        [("bracket", 0.35, 0.5), ("pocket", 0.35, 0.5), ("fan", 0.35, 0.5), ("farouki2018", 0.5, 4.0)]
+    {
+        let file = format!("{}/../examples/{name}.toml", env!("CARGO_MANIFEST_DIR"));
+        let job = Job::from_toml(name, &std::fs::read_to_string(file).unwrap()).unwrap();
+        let mut all = Vec::new();
+        run(&Path::new(&job, Order::Second).unwrap(), |_, executor| {
+            all.push((executor.setpoint(), executor.place().map(|place| place.piece)));
+        })
+        .unwrap();
+        // Inside a piece, whose nodes are no part of the smooth motion; the last tick ends between two setpoints.
+        let inside = all[1..all.len() - 1].windows(9).filter(|ticks| ticks[0].1 == ticks[8].1);
+        let errors = inside.flat_map(|ticks| {
+            [0, 1].map(|axis| {
+                let weighted = [1.0, -6.0, 15.0, -20.0, 15.0, -6.0, 1.0].iter().zip(&ticks[1..8]);
+                weighted.map(|(w, (at, _))| w * f64::from(at[axis].0)).sum::<f64>().abs() / 64.0
+            })
+        });
+        let error = errors.fold(0.0, f64::max);
+        println!("{name}: e is {error:.2} units at least");
+        assert!((least..=most).contains(&error), "{name}: {error}");
     }
 }
 
