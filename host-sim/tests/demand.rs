@@ -26,7 +26,7 @@ fn a_run_is_laid_beside_the_machine() {
     for axis in demand["axes"].as_array().unwrap() {
         for (quantity, limit) in [("velocity", 80.0), ("acceleration", 400.0)] {
             assert_eq!(axis[quantity]["limit"].as_f64(), Some(limit));
-            assert_eq!(axis[quantity]["verdict"], "Kept", "{axis}");
+            assert_eq!(axis[quantity]["verdict"], "kept", "{axis}");
         }
         assert!((axis["velocity"]["peak"].as_f64().unwrap() / 20.0 - 1.0).abs() < 5e-3, "{axis}");
     }

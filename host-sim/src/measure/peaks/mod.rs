@@ -103,6 +103,7 @@ impl Standard {
 
 /// How a motion stands to a limit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Verdict {
     /// Every mean over the stencil is within the limit, give or take twice the share that noise may have.
     Kept,
