@@ -4,7 +4,7 @@
 //! | --- | --- |
 //! | [`limits`] | what axes and path bear |
 //! | [`course`] | the centre's way as a grid: direction, curvature and the job's own feed at each place |
-//! | [`bound`] | the least time that velocities and accelerations leave: what no plan can be faster than |
+//! | [`bound`](mod@bound) | the least time that velocities and accelerations leave: what no plan can be faster than |
 //! | [`demand`] | what a simulated run asks of a machine |
 
 pub mod bound;
