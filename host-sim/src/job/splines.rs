@@ -15,7 +15,7 @@ pub(super) struct RawBezier {
     pub start: Option<Point>,
     pub points: Vec<Point>,
     #[serde(default)]
-    pub correction: RawCorrection,
+    pub correction: CorrectionOrder,
 }
 
 #[derive(Deserialize)]
@@ -25,47 +25,16 @@ pub(super) struct RawSpline {
     pub points: Vec<Point>,
     pub degree: Option<u8>,
     #[serde(default)]
-    pub parameter: RawParameter,
+    pub parameter: Parametrisation,
     #[serde(default)]
-    pub correction: RawCorrection,
-}
-
-#[derive(Clone, Copy, Default, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub(super) enum RawParameter {
-    #[default]
-    Chord,
-    Arc,
-}
-
-#[derive(Clone, Copy, Default, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub(super) enum RawCorrection {
-    Natural,
-    Fifth,
-    FifthJoined,
-    #[default]
-    Seventh,
-    Ninth,
-}
-
-impl From<RawCorrection> for CorrectionOrder {
-    fn from(raw: RawCorrection) -> Self {
-        match raw {
-            RawCorrection::Natural => Self::Natural,
-            RawCorrection::Fifth => Self::FifthFitted,
-            RawCorrection::FifthJoined => Self::FifthJoined,
-            RawCorrection::Seventh => Self::Seventh,
-            RawCorrection::Ninth => Self::Ninth,
-        }
-    }
+    pub correction: CorrectionOrder,
 }
 
 impl RawBezier {
     /// The curve from `start` on.
     pub(super) fn read(&self, start: Complex<f64>, units: Units) -> Result<Segment<f64>, String> {
         let points: Vec<Complex<f64>> = self.points.iter().map(|&point| in_mm(point, units)).collect();
-        let correction = self.correction.into();
+        let correction = self.correction;
         match *points.as_slice() {
             [b, c, d] => Ok(Segment::Spline(Spline::cubic([start, b, c, d], correction))),
             [b, c, d, e, f] => Ok(Segment::Spline(Spline { points: [start, b, c, d, e, f], correction })),
@@ -92,17 +61,13 @@ impl RawSpline {
         if ring {
             points.pop();
         }
-        let by = match self.parameter {
-            RawParameter::Chord => Parametrisation::Chord,
-            RawParameter::Arc => Parametrisation::Arc,
-        };
         let spline = match self.degree {
-            None | Some(3) => Interpolant::cubic(&points, ring, by),
-            Some(5) => Interpolant::quintic(&points, ring, by),
+            None | Some(3) => Interpolant::cubic(&points, ring, self.parameter),
+            Some(5) => Interpolant::quintic(&points, ring, self.parameter),
             Some(degree) => return Err(format!("a `spline` has degree 3 or 5, not {degree}")),
         };
         let spline = spline.map_err(|error| format!("{error} (point 0 is its start)"))?;
-        Ok(spline.curves(self.correction.into()).map(Segment::Spline).collect())
+        Ok(spline.curves(self.correction).map(Segment::Spline).collect())
     }
 }
 

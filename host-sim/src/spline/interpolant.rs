@@ -7,6 +7,7 @@
 
 use std::fmt;
 
+use serde::Deserialize;
 use shared::complex::Complex;
 use shared::curve::Spline;
 use shared::spline::{CorrectionOrder, PolynomialSegment};
@@ -14,7 +15,8 @@ use shared::spline::{CorrectionOrder, PolynomialSegment};
 use super::tridiagonal::{Row, solve};
 
 /// Which parameter the points are given.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Parametrisation {
     /// The distances of neighbouring points.
     #[default]

@@ -15,13 +15,15 @@ use crate::jet::Number;
 use crate::polynomial::{Polynomial, Sign, binomial, sign};
 use crate::real::Real;
 
-/// Which feed correction polynomial a spline piece is driven with.
+/// Which feed correction polynomial a spline piece is driven with. The names are those of the contour form; the wire has numbers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum CorrectionOrder {
     /// None: the parameter grows evenly with the way. "Natural" interpolation.
     Natural,
     /// The fifth order that meets u and u_s at both ends and is fitted between: figure 5(b).
+    #[serde(rename = "fifth")]
     FifthFitted,
     /// The fifth order that meets u, u_s and u_ss at both ends, with nothing left to fit: figure 5(c).
     FifthJoined,
@@ -65,7 +67,7 @@ impl<T: Real> Correction<T> {
     /// v = tau.
     pub const NATURAL: Self = Self { even: Polynomial([T::ZERO; 4]), odd: Polynomial([T::ZERO; 4]) };
 
-    /// v at tau, both in -1/2..=1/2. 9 multiplications, 8 additions.
+    /// v at tau, both in -1/2..=1/2. 9 multiplications and 9 additions.
     #[inline(always)]
     pub fn at<N: Number<T>>(&self, tau: N) -> N {
         let q = -(tau * tau) + T::lit(0.25);

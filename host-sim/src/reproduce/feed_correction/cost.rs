@@ -8,7 +8,7 @@ use shared::spline::fit::from_two_samples;
 use shared::spline::published::{self, Published, Scaled};
 use shared::spline::{CorrectionOrder, Ends, Fit, PolynomialSegment};
 
-use super::fits::{Sampled, centred, closed_form, fourteen};
+use super::fits::{Sampled, centred, chord_sums, closed_form, fourteen};
 use crate::spline::constrained;
 use crate::spline::counted::{Counted, Operations, count};
 use crate::spline::methods::ends_by;
@@ -243,15 +243,8 @@ pub fn times(sampled: &[Sampled], mut done: impl FnMut()) -> Times {
 pub const TIMING_ROUNDS: u64 = 9;
 
 /// The arc length as the paper has it.
-fn chords(sampled: &Sampled) -> f64 {
-    let divisions = sampled.divisions() as u32;
-    let mut before = sampled.segment.point(-0.5);
-    (1..=divisions).fold(0.0, |s, j| {
-        let here = sampled.segment.point(f64::from(j) / f64::from(divisions) - 0.5);
-        let chord = (here[0] - before[0]).hypot(here[1] - before[1]);
-        before = here;
-        s + chord
-    })
+fn chords(sampled: &Sampled) -> Option<f64> {
+    chord_sums(&sampled.segment, sampled.divisions() as u32).last()
 }
 
 /// Takes a result that only its making is asked of.

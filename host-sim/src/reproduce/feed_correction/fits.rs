@@ -45,18 +45,22 @@ pub fn sampled(spline: &Interpolant<2>) -> Vec<Sampled> {
     spline.segments.iter().zip(&spline.spans).map(one).collect()
 }
 
+/// The way to the end of each of so many equal parts, as a sum of chords.
+pub fn chord_sums(segment: &PolynomialSegment<f64, 2>, divisions: u32) -> impl Iterator<Item = f64> {
+    let mut before = segment.point(-0.5);
+    let mut s = 0.0;
+    (1..=divisions).map(move |j| {
+        let here = segment.point(f64::from(j) / f64::from(divisions) - 0.5);
+        s += (here[0] - before[0]).hypot(here[1] - before[1]);
+        before = here;
+        s
+    })
+}
+
 /// Cuts one segment into so many parts, a whole number.
 pub fn divided(segment: &PolynomialSegment<f64, 2>, span: f64, divisions: f64) -> Sampled {
-    let mut s = 0.0;
-    let mut before = segment.point(-0.5);
-    let mut samples = vec![(0.0, 0.0)];
-    for j in 1..=divisions as u32 {
-        let part = f64::from(j) / divisions;
-        let here = segment.point(part - 0.5);
-        s += (here[0] - before[0]).hypot(here[1] - before[1]);
-        samples.push((s, part * span));
-        before = here;
-    }
+    let parts = (1..).map(|j: u32| span * (f64::from(j) / divisions));
+    let samples = std::iter::once((0.0, 0.0)).chain(chord_sums(segment, divisions as u32).zip(parts)).collect();
     Sampled { segment: *segment, span, samples }
 }
 
