@@ -106,8 +106,8 @@ impl<'a> Recorder<'a> {
     }
 }
 
-/// What a setpoint of the f32 tick may be off by in mm, so that no verdict hangs on it: four units. On pieces of up to 116 mm 2.3 units
-/// were found, of which rounding to the unit is half a one.
+/// What a setpoint of the f32 tick may be off by in mm, so that no verdict hangs on it: four units. Between 32 and 64 mm from the
+/// middle of a piece a roundoff of f32 is half a unit, and a point is the sum of some.
 const ERROR_MM: f64 = 8.0 * peaks::ROUNDING;
 
 /// The step of the grid on which the least time is found, in mm.
