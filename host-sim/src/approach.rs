@@ -37,6 +37,7 @@ pub fn line(from: Position, to: [Fixed; 2], feed: f64) -> Option<(Header<f32>, P
         feed: feed as f32,
         start: None,
         end: None,
+        profile: None,
         further: None,
         last: Some([to_x, to_y, Fixed(0)]),
     };

@@ -7,6 +7,7 @@
 //!
 //! and the point of (2) is r + (d/sigma)(-i w^2): both from the one division 1/(|g| sigma). The parameter is tau in -1/2..=1/2.
 
+use crate::accumulator::Accumulator;
 use crate::complex::Complex;
 use crate::duration;
 use crate::error::PathError;
@@ -15,6 +16,7 @@ use crate::fixed::{Fixed, REACH_MM};
 use crate::further::{Linear, Travel};
 use crate::jet::Number;
 use crate::piece::{Piece, Shape};
+use crate::profile::ActiveProfile;
 use crate::real::Real;
 use crate::supply::PathTime;
 
@@ -31,10 +33,8 @@ const SHORTEST_MM: f64 = 4e-6;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ActivePiece<T, const F: usize = 1> {
     curve: Curve<T>,
-    law: FeedLaw<T>,
+    law: Law<T>,
     origin: [Fixed; 2],
-    /// The knots of F as parameters tau.
-    knots: [T; 2],
     /// Into how many equal parts order "exact" divides a tick on this piece, and the inverse of that number.
     substeps: u8,
     substep: T,
@@ -50,6 +50,17 @@ pub struct ActivePiece<T, const F: usize = 1> {
     /// Where the path ends, if it does here.
     last: [Fixed; 2],
     is_last: bool,
+}
+
+/// F of equation (21): of the arc length, or of time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Law<T> {
+    Ramps {
+        law: FeedLaw<T>,
+        /// The knots of F as parameters tau.
+        knots: [T; 2],
+    },
+    Profile(ActiveProfile<T>),
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -80,6 +91,8 @@ impl<T: Real, const F: usize> ActivePiece<T, F> {
         }
         let further = piece.further.as_ref().map(Linear::activate);
         let law = FeedLaw::activate(piece.start, piece.end)?;
+        // A profile is that of the contact point.
+        let weight = if piece.profile.is_some() { T::ZERO } else { weight };
         let contact = piece.feed * (T::ONE - weight);
         let centre = piece.feed * weight;
         let curve = match piece.shape {
@@ -108,9 +121,8 @@ impl<T: Real, const F: usize> ActivePiece<T, F> {
         };
         let mut active = Self {
             curve,
-            law,
+            law: Law::Ramps { law, knots: [-T::HALF, T::HALF] },
             origin: piece.origin,
-            knots: [T::ZERO; 2],
             substeps: 1,
             substep: T::ONE,
             start_rate: T::ZERO,
@@ -123,11 +135,20 @@ impl<T: Real, const F: usize> ActivePiece<T, F> {
             is_last: piece.last.is_some(),
         };
         active.check_points()?;
-        active.knots = law.knots().map(|u| active.tau_at(u));
         let fastest = active.fastest();
-        active.substeps = active.choose_substeps(fastest * tick);
+        active.law = match piece.profile {
+            Some(profile) if piece.start.is_some() || piece.end.is_some() => {
+                return Err(PathError::Profile { factors: profile.factors.map(T::to_f32) });
+            }
+            Some(profile) => Law::Profile(ActiveProfile::activate(&profile, active.mean_rate())?),
+            None => Law::Ramps { law, knots: law.knots().map(|u| active.tau_at(u)) },
+        };
+        active.substeps = choose_substeps(fastest * tick, law.shortest_ramp());
         active.substep = T::ONE / T::from_int(i32::from(active.substeps));
         active.start_rate = active.rate(-T::HALF);
+        if let Some(profile) = active.profile() {
+            active.start_rate = active.start_rate * profile.factor(-T::HALF);
+        }
         active.least_slowness = T::ONE / fastest;
         active.until = PathTime::after(duration::of(&active));
         Ok(active)
@@ -143,7 +164,7 @@ impl<T: Real, const F: usize> ActivePiece<T, F> {
         Self { goes_on: true, ..self }
     }
 
-    /// d(tau)/dt of equation (21), in 1/s: above zero. One division.
+    /// d(tau)/dt of equation (21), in 1/s: above zero. One division. Along a profile that of F = 1.
     #[inline(always)]
     pub fn rate<N: Number<T>>(&self, tau: N) -> N {
         match &self.curve {
@@ -153,7 +174,7 @@ impl<T: Real, const F: usize> ActivePiece<T, F> {
         }
     }
 
-    /// The point relative to the origin in mm, and the rate of (21) in 1/s.
+    /// The point relative to the origin in mm, and the rate of (21) in 1/s; along a profile that of F = 1.
     #[inline(always)]
     pub fn point_and_rate(&self, tau: T) -> (Complex<T>, T) {
         let factor = self.factor(tau);
@@ -174,11 +195,38 @@ impl<T: Real, const F: usize> ActivePiece<T, F> {
     /// F of equation (21). The arc length is evaluated within a ramp only.
     #[inline(always)]
     pub fn factor<N: Number<T>>(&self, tau: N) -> N {
-        let [first, second] = self.knots;
-        if tau.value() >= first && tau.value() <= second {
-            N::constant(T::ONE)
-        } else {
-            self.law.factor(self.fraction(tau))
+        match &self.law {
+            Law::Ramps { law, knots: [first, second] } if tau.value() < *first || tau.value() > *second => {
+                law.factor(self.fraction(tau))
+            }
+            _ => N::constant(T::ONE),
+        }
+    }
+
+    /// The feed over time, where the piece has one.
+    #[inline(always)]
+    pub fn profile(&self) -> Option<&ActiveProfile<T>> {
+        match &self.law {
+            Law::Profile(profile) => Some(profile),
+            Law::Ramps { .. } => None,
+        }
+    }
+
+    /// Moves `tau` on by `step`, and then to where the fraction is `fraction` + 1/2: by one Newton step, which squares what is left. Along
+    /// a profile.
+    #[inline(always)]
+    pub fn seek(&self, tau: &mut Accumulator<T>, step: T, fraction: T) {
+        match &self.curve {
+            Curve::Ph(ph) => {
+                tau.add(step);
+                let (u, slope) = ph.fraction_and_slope(tau.value());
+                tau.add((fraction - u) / slope);
+                // Beyond the ends by rounding only.
+                if tau.value().abs() > T::HALF {
+                    *tau = Accumulator::new(tau.value().least(T::HALF).most(-T::HALF));
+                }
+            }
+            Curve::Line { .. } | Curve::Arc { .. } | Curve::Spline(_) => *tau = Accumulator::new(fraction),
         }
     }
 
@@ -215,7 +263,10 @@ impl<T: Real, const F: usize> ActivePiece<T, F> {
 
     /// The parameters tau between which the rate is one smooth function.
     pub fn knots(&self) -> [T; 2] {
-        self.knots
+        match &self.law {
+            Law::Ramps { knots, .. } => *knots,
+            Law::Profile(_) => [-T::HALF, T::HALF],
+        }
     }
 
     /// The rate of (21) at the start of the piece, in 1/s.
@@ -331,12 +382,22 @@ impl<T: Real, const F: usize> ActivePiece<T, F> {
         }
     }
 
-    /// As many as keep a substep to a quarter of a ramp and a sixteenth of a piece at its fastest, where the Gauss rule is exact to
-    /// rounding; 8 at most, so that the tick stays bounded. `share` is the part of the piece that a tick covers at its fastest.
-    fn choose_substeps(&self, share: T) -> u8 {
-        let wanted = share * T::lit(16.0).most(T::lit(4.0) / self.law.shortest_ramp());
-        (wanted + T::HALF).least(T::lit(8.0)).to_int().clamp(1, 8) as u8
+    /// V/S in 1/s, for a profile: the rate of u at F = 1.
+    fn mean_rate(&self) -> T {
+        match &self.curve {
+            Curve::Ph(ph) => ph.mean_rate(),
+            Curve::Line { base, .. } | Curve::Arc { base, .. } => *base,
+            Curve::Spline(spline) => spline.base,
+        }
     }
+}
+
+/// As many as keep a substep to a quarter of a ramp and a sixteenth of a piece at its fastest, where the Gauss rule is exact to
+/// rounding; 8 at most, so that the tick stays bounded. `share` is the part of the piece that a tick covers at its fastest, `ramp`
+/// the shortest ramp as a part of the piece.
+fn choose_substeps<T: Real>(share: T, ramp: T) -> u8 {
+    let wanted = share * T::lit(16.0).most(T::lit(4.0) / ramp);
+    (wanted + T::HALF).least(T::lit(8.0)).to_int().clamp(1, 8) as u8
 }
 
 fn check_length<T: Real>(length: T) -> Result<T, PathError> {

@@ -18,6 +18,9 @@ const MOST_DOUBLINGS: u32 = 6;
 
 /// The time that `piece` takes at its own feed, in s. Load time.
 pub fn of<T: Real, const F: usize>(piece: &ActivePiece<T, F>) -> T {
+    if let Some(profile) = piece.profile() {
+        return profile.duration();
+    }
     over_stretches(piece, &Accumulator::new(-T::HALF), |from, width| {
         let mut before = panel(piece, from, width);
         for doubling in 1..=MOST_DOUBLINGS {
@@ -31,7 +34,8 @@ pub fn of<T: Real, const F: usize>(piece: &ActivePiece<T, F>) -> T {
     })
 }
 
-/// The time from the parameter `tau` to the end of `piece` at its own feed, in s.
+/// The time from the parameter `tau` to the end of `piece` at its own feed, in s. Along a profile it is known instead
+/// ([`crate::profile::ActiveProfile::left`]).
 #[inline(never)]
 pub fn of_rest<T: Real, const F: usize>(piece: &ActivePiece<T, F>, tau: &Accumulator<T>) -> T {
     over_stretches(piece, tau, |from, width| panel(piece, from, width))

@@ -38,6 +38,11 @@ pub enum PathError {
         /// lambda_0 + lambda_1, which may be at most 1.
         sum: f32,
     },
+    /// A feed profile with a coefficient outside 0..=1, or without any that is a half or more, or beside ramps.
+    Profile {
+        /// What was given.
+        factors: [f32; 4],
+    },
     /// The interval of a piece is reversed, empty, or leaves 0..=1.
     Interval {
         /// The first parameter.
@@ -128,6 +133,12 @@ impl fmt::Display for PathError {
             }
             Self::Ramps { sum } => {
                 write!(f, "the ramps of a piece cover {sum} of it; lambda at both ends may sum to at most 1")
+            }
+            Self::Profile { factors: [a, b, c, d] } => {
+                write!(
+                    f,
+                    "the feed profile is {a}, {b}, {c}, {d}; it needs parts of the feed within 0..1, one of them at least 0.5, and no ramps"
+                )
             }
             Self::Interval { from, to } => {
                 write!(f, "the piece runs from {from} to {to}; it needs 0 <= from < to <= 1")

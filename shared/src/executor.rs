@@ -67,6 +67,8 @@ pub struct Executor<T, const F: usize = 1> {
     at_node: bool,
     entered: u32,
     tau: Accumulator<T>,
+    /// The time on a piece with a profile, -1/2..=1/2.
+    theta: Accumulator<T>,
     rate: T,
     point: Complex<T>,
     setpoint: Setpoint<F>,
@@ -116,6 +118,7 @@ impl<T: Real, const F: usize> Executor<T, F> {
             at_node: true,
             entered: 0,
             tau: Accumulator::new(T::ZERO),
+            theta: Accumulator::new(T::ZERO),
             rate: T::ZERO,
             point: Complex::ZERO,
             setpoint,
@@ -204,7 +207,7 @@ impl<T: Real, const F: usize> Executor<T, F> {
             (time, entered) = changed;
         }
         let left = match &self.active {
-            Some(piece) => advance(piece, &mut self.tau, self.rate, self.order, time),
+            Some(piece) => advance(piece, &mut self.tau, &mut self.theta, self.rate, self.order, time),
             None => Some(time),
         };
         if let Some(left) = left
@@ -230,7 +233,19 @@ impl<T: Real, const F: usize> Executor<T, F> {
     /// A bound from below of the path time that is left on the piece, in s.
     #[inline(always)]
     fn least_time(&self, piece: &ActivePiece<T, F>) -> T {
-        self.tau.left_to(T::HALF) * piece.least_slowness()
+        match piece.profile() {
+            Some(profile) => profile.left(&self.theta),
+            None => self.tau.left_to(T::HALF) * piece.least_slowness(),
+        }
+    }
+
+    /// The path time that is left on the piece, in s.
+    #[inline(always)]
+    fn time_left(&self, piece: &ActivePiece<T, F>) -> T {
+        match piece.profile() {
+            Some(profile) => profile.left(&self.theta),
+            None => duration::of_rest(piece, &self.tau),
+        }
     }
 
     /// What a tick does before it moves, unless the pace is steady and the way ample. Returns the path time to move by and how many
@@ -247,7 +262,7 @@ impl<T: Real, const F: usize> Executor<T, F> {
         let piece = self.active.as_ref()?;
         let least_way = self.least_time(piece) + self.beyond(piece, pieces);
         let target = if self.state.is_stopping() { Target::REST } else { self.wanted };
-        let way = || duration::of_rest(piece, &self.tau) + self.beyond(piece, pieces);
+        let way = || self.time_left(piece) + self.beyond(piece, pieces);
         let mut pace = self.pace;
         let stride = self.pacer.step(&mut pace, &target, least_way, way);
         self.pace = pace;
@@ -283,6 +298,9 @@ impl<T: Real, const F: usize> Executor<T, F> {
         let tau = self.tau.value();
         let (point, rate) = piece.point_and_rate(tau);
         (self.point, self.rate) = (point, rate);
+        if let Some(profile) = piece.profile() {
+            self.rate = rate * profile.factor(self.theta.value());
+        }
         self.setpoint.plane = piece.place(point);
         if let Some(further) = piece.further(tau) {
             self.setpoint.further = further;
@@ -314,6 +332,7 @@ impl<T: Real, const F: usize> Executor<T, F> {
     fn stand_at_start(&mut self) {
         let Some(piece) = &self.active else { return };
         self.tau = Accumulator::new(-T::HALF);
+        self.theta = self.tau;
         self.rate = piece.start_rate();
         self.entered = self.entered.wrapping_add(1);
         self.at_node = false;
@@ -349,7 +368,7 @@ impl<T: Real, const F: usize> Executor<T, F> {
             }
             self.stand_at_start();
             let Some(piece) = &self.active else { return false };
-            match advance(piece, &mut self.tau, self.rate, self.order, left) {
+            match advance(piece, &mut self.tau, &mut self.theta, self.rate, self.order, left) {
                 None => return true,
                 Some(rest) => left = rest,
             }
@@ -365,6 +384,7 @@ impl<T: Real, const F: usize> Executor<T, F> {
             self.setpoint.further = further;
         }
         self.tau = Accumulator::new(T::HALF);
+        self.theta = self.tau;
         self.steady = false;
         self.at_node = true;
     }
@@ -397,7 +417,7 @@ impl<T: Real, const F: usize> Executor<T, F> {
             return;
         }
         let Some(piece) = &self.active else { return };
-        if !self.pacer.is_nothing(duration::of_rest(piece, &self.tau) + self.beyond(piece, pieces)) {
+        if !self.pacer.is_nothing(self.time_left(piece) + self.beyond(piece, pieces)) {
             return;
         }
         if piece.last().is_some() {

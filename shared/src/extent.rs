@@ -252,6 +252,7 @@ mod tests {
             feed: T::ONE,
             start: None,
             end: None,
+            profile: None,
             further: None,
             last: None,
         }

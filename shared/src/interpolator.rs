@@ -1,4 +1,4 @@
-//! Moves the parameter along one piece by some time: equation (21), to first, second or third order or exactly.
+//! Moves the parameter along one piece by some time: equation (21), to first, second or third order or exactly, or along a profile.
 
 use crate::accumulator::Accumulator;
 use crate::active::ActivePiece;
@@ -6,7 +6,7 @@ use crate::jet::Jet;
 use crate::piece::Order;
 use crate::real::Real;
 
-/// Moves `tau` along `piece` for `time` seconds. `rate` is the rate of (21) at `tau`.
+/// Moves `tau` along `piece` for `time` seconds, and `theta` where the piece has a profile. `rate` is the rate of (21) at `tau`.
 ///
 /// Returns the time that is left when the end of the piece comes first; `tau` then says nothing any more. The step is the
 /// same function of time whether or not the piece ends within it, so that a node changes nothing but the curve.
@@ -14,10 +14,19 @@ use crate::real::Real;
 pub fn advance<T: Real, const F: usize>(
     piece: &ActivePiece<T, F>,
     tau: &mut Accumulator<T>,
+    theta: &mut Accumulator<T>,
     rate: T,
     order: Order,
     time: T,
 ) -> Option<T> {
+    if let Some(profile) = piece.profile() {
+        let left = profile.advance(theta, time);
+        if left.is_none() {
+            // The step of (22), and to where the time says.
+            piece.seek(tau, rate * time, profile.fraction(theta.value()));
+        }
+        return left;
+    }
     match order {
         Order::First => first(tau, rate, time),
         Order::Second => taylor(piece, tau, time, false),

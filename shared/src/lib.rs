@@ -2,7 +2,7 @@
 //!
 //! A setpoint's way through this crate: a [`curve::Segment`] is cut into a [`piece::Piece`], which travels over the [`link`]; the
 //! [`loader`] checks it and makes the [`active::ActivePiece`] that the [`executor`] walks, moved by the [`interpolator`] under
-//! the [`feed`] law at the [`pace`] that a [`motion`] has come to; a [`servo`] turns setpoint and encoder into a command, or
+//! the [`feed`] law, or along a planned [`profile`], at the [`pace`] that a [`motion`] has come to; a [`servo`] turns setpoint and encoder into a command, or
 //! [`steps`] turns setpoints into the pulses of a tick. [`safety`] decides in every tick whether any of it may move.
 //!
 //! This crate knows no clock, no log, no heap and no board; time and inputs are arguments. All of it is generic over
@@ -38,6 +38,7 @@ pub mod motion;
 pub mod pace;
 pub mod piece;
 pub mod polynomial;
+pub mod profile;
 pub mod real;
 pub mod safety;
 pub mod servo;

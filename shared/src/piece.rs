@@ -12,6 +12,7 @@ use crate::feed::Ramp;
 use crate::fixed::{Fixed, Position};
 use crate::further::Travel;
 use crate::pace::PaceLimits;
+use crate::profile::Profile;
 use crate::real::Real;
 use crate::spline::{CorrectionOrder, PolynomialSegment};
 
@@ -91,6 +92,8 @@ pub struct Piece<T, const F: usize = 1> {
     pub start: Option<Ramp<T>>,
     /// The ramp at the end; none where the path leaves smoothly.
     pub end: Option<Ramp<T>>,
+    /// The feed over time, in the place of ramps and weight: from a planner. A piece has ramps or this.
+    pub profile: Option<Profile<T>>,
     /// How the further axes move with it, linearly in arc length (but for the z of a spline); none where they stay. With it a line may have no chord: then it
     /// is as long as this.
     pub further: Option<Travel<F>>,

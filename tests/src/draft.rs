@@ -77,6 +77,7 @@ impl Draft {
             feed: number(self.feed),
             start: self.start.map(ramp),
             end: self.end.map(ramp),
+            profile: None,
             further: None,
             last: None,
         }

@@ -35,6 +35,7 @@ fn piece(shape: Shape<f32>) -> Piece<f32> {
         feed: 40.0,
         start: None,
         end: None,
+        profile: None,
         further: None,
         last: None,
     }

@@ -110,6 +110,7 @@ fn a_plunge_is_a_line_of_its_own_length() {
         origin: plane,
         shape: Shape::Line { chord: shared::complex::Complex::ZERO },
         feed: 10.0,
+        profile: None,
         further: Some(Travel { from: [at(from)], to: [at(to)] }),
         ..along
     };

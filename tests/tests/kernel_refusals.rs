@@ -272,6 +272,7 @@ fn assemble(kind: u8, n: &[f32; SLOTS], ramps: [bool; 2], origin: [i32; 2]) -> (
             feed: n[16],
             start: ramp(ramps[0], 17),
             end: ramp(ramps[1], 19),
+            profile: None,
             further: None,
             last: None,
         },

@@ -44,6 +44,7 @@ fn polyline(random: &mut Random, count: usize) -> (Vec<Piece<f32>>, Vec<[i32; 2]
             feed: 20.0,
             start: None,
             end: None,
+            profile: None,
             further: None,
             last: (k + 1 == count).then_some([Fixed(x + dx), Fixed(y + dy), Fixed(0)]),
         });

@@ -35,6 +35,7 @@ fn line() -> Piece<f32> {
         feed: 10.0,
         start: None,
         end: None,
+        profile: None,
         further: None,
         last: Some([end, Fixed(0), Fixed(0)]),
     }

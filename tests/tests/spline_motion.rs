@@ -32,6 +32,7 @@ fn piece<T: Real>(origin: Complex<f64>, shape: SplineShape<f64>, further: Option
         feed: number(FEED),
         start: None,
         end: None,
+        profile: None,
         further,
         last: None,
     }

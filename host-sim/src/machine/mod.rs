@@ -1,5 +1,6 @@
 //! A machine's file: `machine.toml`, read and checked as the controller will check it again.
 
+mod path_settings;
 mod summary;
 pub mod transfer;
 
@@ -10,6 +11,7 @@ use toml::de::{DeTable, DeValue};
 
 use crate::input::{InputError, Source};
 
+pub use path_settings::PathSettings;
 pub use summary::{AxisSummary, DriveSummary, HomingSummary, Summary};
 
 /// Reads and checks a machine's file. Errors name file, line and column.

@@ -5,6 +5,7 @@ use shared::curve::{Curve as _, Segment};
 use shared::feed::Ramp;
 use shared::fixed::{Position, round_point};
 use shared::piece::{Piece, Shape, SplineShape};
+use shared::profile::Profile;
 
 use crate::contour::{Along, Contour};
 
@@ -29,6 +30,8 @@ pub struct PathPiece {
     pub start: Option<Ramp<f64>>,
     /// The ramp at the end.
     pub end: Option<Ramp<f64>>,
+    /// The feed over time, where it is planned.
+    pub profile: Option<Profile<f64>>,
 }
 
 impl PathPiece {
@@ -45,11 +48,12 @@ impl PathPiece {
             end_corner: None,
             start: None,
             end: None,
+            profile: None,
         })
     }
 
     /// The same over another interval.
-    pub(super) fn over(&self, [from, to]: [f64; 2]) -> Self {
+    pub fn over(&self, [from, to]: [f64; 2]) -> Self {
         let along = match self.along {
             Along::Segment { segment, .. } => Along::Segment { segment, from, to },
             Along::Fill { node, .. } => Along::Fill { node, from, to },
@@ -144,6 +148,7 @@ impl PathPiece {
             feed: real(exact.feed),
             start: exact.start.map(ramp),
             end: exact.end.map(ramp),
+            profile: exact.profile.map(|Profile { factors }| Profile { factors: factors.map(real) }),
             further: None,
             last,
         }
@@ -160,6 +165,7 @@ impl PathPiece {
             feed: self.feed,
             start: self.start,
             end: self.end,
+            profile: self.profile,
             further: None,
             last,
         }

@@ -25,7 +25,7 @@ struct Line {
 }
 
 /// What one place allows: u between lines, and x up to a number.
-struct Allowed {
+pub(super) struct Allowed {
     upper: [Line; 2],
     lower: [Line; 2],
     most: f64,
@@ -35,7 +35,7 @@ struct Allowed {
 const STILL: f64 = 1e-12;
 
 impl Allowed {
-    fn at(place: &Place, limits: &Limits) -> Self {
+    pub(super) fn at(place: &Place, limits: &Limits) -> Self {
         let n = place.direction.left() * place.curvature;
         let (along, across) = ([place.direction.re, place.direction.im], [n.re, n.im]);
         let free = |offset: f64| Line { offset, slope: 0.0 };
@@ -55,8 +55,13 @@ impl Allowed {
     }
 
     /// The largest u at x.
-    fn most_at(&self, x: f64) -> f64 {
+    pub(super) fn most_at(&self, x: f64) -> f64 {
         self.upper.iter().map(|line| line.offset + line.slope * x).fold(f64::INFINITY, f64::min)
+    }
+
+    /// The least u at x.
+    pub(super) fn least_at(&self, x: f64) -> f64 {
+        self.lower.iter().map(|line| line.offset + line.slope * x).fold(f64::NEG_INFINITY, f64::max)
     }
 
     /// The largest x from which a step with some allowed u leads to at most `next` and not below 0: a linear program of two unknowns,
@@ -104,8 +109,15 @@ fn corner(before: &Place, after: &Place, limits: &Limits) -> f64 {
 pub fn bound(course: &Course, limits: &Limits) -> Bound {
     let places = &course.places;
     let allowed: Vec<Allowed> = places.iter().map(|place| Allowed::at(place, limits)).collect();
+    within(course, limits, &allowed)
+}
+
+/// The same for what every place allows.
+pub(super) fn within(course: &Course, limits: &Limits, allowed: &[Allowed]) -> Bound {
+    let places = &course.places;
     let mut reachable = vec![0.0; places.len()];
-    let mut next = if course.rest { 0.0 } else { f64::MAX };
+    let square = |speed: Option<f64>| speed.map_or(f64::MAX, |speed| speed * speed);
+    let mut next = square(course.ends[1]);
     for k in (0..places.len()).rev() {
         let step = places.get(k + 1).map_or(0.0, |after| after.step);
         let corner_of = |after: &Place| if after.is_corner { corner(&places[k], after, limits) } else { f64::INFINITY };
@@ -113,7 +125,7 @@ pub fn bound(course: &Course, limits: &Limits) -> Bound {
         next = allowed[k].controllable(step, next.min(most)).unwrap_or(0.0).min(most);
         reachable[k] = next;
     }
-    let mut x = if course.rest { 0.0 } else { reachable.first().copied().unwrap_or(0.0) };
+    let mut x = reachable.first().copied().unwrap_or(0.0).min(square(course.ends[0]));
     let (mut speed, mut time) = (Vec::with_capacity(places.len()), 0.0);
     for (k, place) in places.iter().enumerate() {
         if k > 0 {
@@ -150,7 +162,9 @@ mod tests {
         Limits {
             velocity: [1e3; 2],
             acceleration: [acceleration; 2],
+            jerk: [f64::INFINITY; 2],
             corner_step: [0.0; 2],
+            feed: f64::INFINITY,
             centripetal: f64::INFINITY,
         }
     }

@@ -1,7 +1,7 @@
 //! The way of the tool's centre as a grid of places.
 
 use shared::complex::Complex;
-use shared::curve::Curve as _;
+use shared::curve::{Curve as _, Segment};
 
 use crate::contour::SMOOTH;
 use crate::path::{Path, PathPiece};
@@ -11,12 +11,20 @@ use crate::path::{Path, PathPiece};
 pub struct Place {
     /// The number of the piece.
     pub piece: usize,
+    /// The parameter on its segment.
+    pub xi: f64,
+    /// The fraction of its contact length that lies behind, 0..=1 (that of the arc's angle on a fill arc).
+    pub fraction: f64,
     /// The way from the place before, in mm; 0 at the first place of a piece.
     pub step: f64,
     /// The unit tangent.
     pub direction: Complex<f64>,
     /// The curvature of the centre's way in 1/mm, positive to the left.
     pub curvature: f64,
+    /// |1 + kappa d|: how far the centre moves for a unit of the contact point.
+    pub stretch: f64,
+    /// The derivative of that along the contour, in 1/mm.
+    pub stretching: f64,
     /// The centre's feed at the job's own V, without ramps, in mm/s.
     pub feed: f64,
     /// Whether the way turns between the place before and this one: both stand on one corner.
@@ -28,31 +36,40 @@ pub struct Place {
 pub struct Course {
     /// The places; the last one of a piece and the first one of the next stand at one point.
     pub places: Vec<Place>,
-    /// Whether it begins and ends at rest.
-    pub rest: bool,
+    /// The speeds at which it begins and ends, in mm/s; none where that is free.
+    pub ends: [Option<f64>; 2],
 }
+
+/// How the ways between places grow away from the ends of a piece, where a motion may begin or end at rest.
+const GROWTH: f64 = 1.35;
+
+/// The first of these, as a part of the longest.
+const FINEST: f64 = 2e-3;
 
 impl Course {
     /// The way of a path, in steps of at most about `step` mm and at least sixteen a piece.
     pub fn new(path: &Path, step: f64) -> Self {
-        let mut places: Vec<Place> = Vec::new();
-        for (number, piece) in path.pieces.iter().enumerate() {
+        let rest = path.header.rest.then_some(0.0);
+        let even = |piece: &PathPiece| {
             let count = (piece.centre_length() / step).ceil().clamp(16.0, 1e6) as u32;
-            let [from, to] = piece.interval;
-            let width = (to - from) / f64::from(count);
-            for k in 0..=count {
-                let xi = if k == count { to } else { from + width * f64::from(k) };
-                // The middle of the step before, for its length: Simpson's rule.
-                let before = if k == 0 { 0.0 } else { length(piece, xi - width, xi) };
-                let place = place(piece, path.weight, number, xi, before);
-                let turns = |last: &Place| {
-                    last.direction.cross(place.direction).abs() > SMOOTH || last.direction.dot(place.direction) < 0.0
-                };
-                let is_corner = k == 0 && places.last().is_some_and(turns);
-                places.push(Place { is_corner, ..place });
-            }
-        }
-        Self { places, rest: path.header.rest }
+            (0..=count).map(|k| f64::from(k) / f64::from(count)).collect()
+        };
+        Self { places: places(&path.pieces, path.weight, even), ends: [rest; 2] }
+    }
+
+    /// The way of some pieces, in steps of at most about `step` mm that are finer towards the ends of pieces, where it turns sharply or
+    /// begins and ends. A line shorter than a step is one.
+    pub fn graded(pieces: &[PathPiece], weight: f64, step: f64, ends: [Option<f64>; 2]) -> Self {
+        let last = pieces.len().saturating_sub(1);
+        let mut number = 0;
+        let graded = |piece: &PathPiece| {
+            let hard = [piece.start_corner.is_some() || number == 0, piece.end_corner.is_some() || number == last];
+            number += 1;
+            // A curve may change its curvature within a step.
+            let least = if matches!(piece.segment, Segment::Line(_)) { 1.0 } else { 6.0 };
+            grades(piece.centre_length() / step, least, hard)
+        };
+        Self { places: places(pieces, weight, graded), ends }
     }
 
     /// Its length in mm.
@@ -61,22 +78,96 @@ impl Course {
     }
 }
 
+/// Places on a piece of so many steps as parts of it, 0 to 1: even, at least so many, and finer towards hard ends.
+fn grades(steps: f64, least: f64, hard: [bool; 2]) -> Vec<f64> {
+    let count = steps.ceil().clamp(least, 1e6);
+    let even = 1.0 / count;
+    // A piece of one step has no ends to be fine at: a program of thousands of lines.
+    let fine = |hard: bool| -> Vec<f64> {
+        if !hard || steps < 1.0 {
+            return Vec::new();
+        }
+        let widths = std::iter::successors(Some(FINEST * even), |width| Some(width * GROWTH));
+        let sums = widths.scan(0.0, |sum, width| {
+            *sum += width;
+            Some((*sum, width))
+        });
+        sums.take_while(|&(sum, width)| width < even && sum < 0.45).map(|(sum, _)| sum).collect()
+    };
+    let (first, last) = (fine(hard[0]), fine(hard[1]));
+    let (from, to) = (first.last().copied().unwrap_or(0.0), 1.0 - last.last().copied().unwrap_or(0.0));
+    let middle = ((to - from) * count).ceil().max(1.0);
+    let mut all = Vec::with_capacity(first.len() + last.len() + middle as usize + 1);
+    if from > 0.0 {
+        all.push(0.0);
+    }
+    all.extend(first.iter().take(first.len().saturating_sub(1)));
+    all.extend((0..=middle as u32).map(|k| from + (to - from) * f64::from(k) / middle));
+    all.extend(last.iter().rev().skip(1).map(|sum| 1.0 - sum));
+    if to < 1.0 {
+        all.push(1.0);
+    }
+    all
+}
+
+/// The places of pieces, at the parts of each that `parts` says.
+fn places(pieces: &[PathPiece], weight: f64, mut parts: impl FnMut(&PathPiece) -> Vec<f64>) -> Vec<Place> {
+    let mut places: Vec<Place> = Vec::new();
+    for (number, piece) in pieces.iter().enumerate() {
+        let [from, to] = piece.interval;
+        let lengths = [from, to].map(|xi| piece.segment.length_to(xi));
+        let mut before = from;
+        for (k, part) in parts(piece).into_iter().enumerate() {
+            let xi = if part == 1.0 { to } else { from + (to - from) * part };
+            let step = if k == 0 { 0.0 } else { length(piece, before, xi) };
+            before = xi;
+            let mut place = place(piece, weight, xi);
+            (place.piece, place.step) = (number, step);
+            place.fraction =
+                if part == 1.0 { 1.0 } else { (piece.segment.length_to(xi) - lengths[0]) / (lengths[1] - lengths[0]) };
+            let turns = |last: &Place| {
+                last.direction.cross(place.direction).abs() > SMOOTH || last.direction.dot(place.direction) < 0.0
+            };
+            place.is_corner = k == 0 && places.last().is_some_and(turns);
+            places.push(place);
+        }
+    }
+    places
+}
+
 /// The centre's speed |1 + kappa d| sigma, by Simpson's rule.
 fn length(piece: &PathPiece, from: f64, to: f64) -> f64 {
+    if let Segment::Line(line) = piece.segment {
+        return (line.end - line.start).norm() * (to - from);
+    }
     let speed = |xi: f64| piece.stretch(xi) * piece.segment.speed(xi);
     (speed(from) + 4.0 * speed(0.5 * (from + to)) + speed(to)) * (to - from) / 6.0
 }
 
-fn place(piece: &PathPiece, weight: f64, number: usize, xi: f64, step: f64) -> Place {
+fn place(piece: &PathPiece, weight: f64, xi: f64) -> Place {
+    /// Half the difference for the derivative of the stretch, as a part of a segment.
+    const NEAR: f64 = 1e-5;
     let stretch = piece.stretch(xi);
     let kappa = piece.segment.curvature(xi);
+    let stretching = match piece.segment {
+        Segment::Line(_) | Segment::Arc(_) => 0.0,
+        Segment::Ph(_) | Segment::Spline(_) if piece.offset == 0.0 => 0.0,
+        Segment::Ph(_) | Segment::Spline(_) => {
+            let (low, high) = ((xi - NEAR).max(0.0), (xi + NEAR).min(1.0));
+            (piece.stretch(high) - piece.stretch(low)) / ((high - low) * piece.segment.speed(xi))
+        }
+    };
     // The tangents of curve and offset turn alike, over lengths in the ratio |1 + kappa d|; backwards the turn per length changes sign.
     let curvature = if piece.is_forward() { kappa / stretch } else { -kappa / stretch };
     Place {
-        piece: number,
-        step,
+        piece: 0,
+        xi,
+        fraction: 0.0,
+        step: 0.0,
         direction: piece.direction(xi),
         curvature,
+        stretch,
+        stretching,
         // Equation (20): V_d = V ((1 - w) |1 + kappa d| + w).
         feed: piece.feed * ((1.0 - weight) * stretch + weight),
         is_corner: false,

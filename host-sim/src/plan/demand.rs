@@ -6,6 +6,7 @@ use shared::machine::MachineSettings;
 
 use super::{Course, Limits, bound};
 use crate::job::Units;
+use crate::machine::PathSettings;
 use crate::measure::peaks::{self, Peak, Standard, Verdict, peaks};
 use crate::path::Path;
 
@@ -100,7 +101,7 @@ impl<'a> Recorder<'a> {
             corner_step: step.velocity / mm,
         });
         let axes = axes.collect();
-        let limits = Limits::of(machine, [x.velocity, y.velocity])?;
+        let limits = Limits { corner_step: [x.velocity, y.velocity], ..Limits::of(machine, &PathSettings::default())? };
         let least_time_s = bound(&Course::new(self.path, STEP_MM), &limits).time;
         Some(Demand { axes, least_time_s })
     }

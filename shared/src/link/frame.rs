@@ -176,6 +176,7 @@ mod tests {
             feed: x,
             start: Some(Ramp { length: 0.25, factor: 0.25 }),
             end: Some(Ramp { length: x, factor: 0.25 }),
+            profile: None,
             further: Some(Travel { from: [Fixed(i32::MIN)], to: [Fixed(origin)] }),
             last: Some([Fixed(i32::MIN), Fixed(i32::MAX), Fixed(origin)]),
         }

@@ -15,7 +15,7 @@ use crate::safety::{self, Coordinates, Fault, Refused};
 /// The version of everything that is said. A controller speaks to hosts of the same version only.
 ///
 /// `Hello`, its answer and [`Refusal::Version`] keep their form in every version from 3 on, so that two versions can say so.
-pub const VERSION: u16 = 5;
+pub const VERSION: u16 = 6;
 
 /// From the host to the controller.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]

@@ -29,6 +29,7 @@ fn pieces(count: usize) -> Vec<Piece<f32>> {
         feed: 1.0,
         start: None,
         end: None,
+        profile: None,
         further: None,
         last: None,
     };

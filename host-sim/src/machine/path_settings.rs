@@ -1,0 +1,17 @@
+//! What a machine's file says of the path: for the planner on the host, not for the controller.
+
+use serde::Deserialize;
+
+/// The table `[path]`: limits of a plan beside those of the axes. Lengths in mm, times in s.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PathSettings {
+    /// The largest feed of the tool's centre.
+    pub feed: Option<f64>,
+    /// The largest acceleration across the path.
+    pub centripetal: Option<f64>,
+    /// The steps of the velocities of x and y that a corner may make.
+    pub corner_step: Option<[f64; 2]>,
+    /// The largest contour error that the machine may make.
+    pub contour_error: Option<f64>,
+}

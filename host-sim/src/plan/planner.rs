@@ -1,0 +1,262 @@
+//! The plan of a path: speeds at places, within limits, and the profiles that make them.
+
+use super::bound::{self, Allowed};
+use super::caps::{Cap, Reason, caps};
+use super::course::Course;
+use super::law::{Law, Parts, Tolerance};
+use super::limits::{JERK_WINDOW, Limits};
+use super::smooth::{self, State};
+use crate::path::PathPiece;
+
+/// Parts of velocity, acceleration and jerk that a plan uses: what lies between places, and what a cubic departs by, is in the rest.
+const USED: [f64; 3] = [0.999, 0.994, 0.96];
+
+/// How far a law may be from the speeds that it follows, as a part of the speed, and of the acceleration limit.
+const SPEED_TOLERANCE: f64 = 5e-4;
+const ACCELERATION_TOLERANCE: f64 = 4e-3;
+
+/// How often places where a plan asks for too much are given less.
+const ROUNDS: usize = 12;
+
+/// A planned motion.
+#[derive(Clone, Debug)]
+pub struct Plan {
+    /// The pieces with their profiles; a piece of the path may have become several.
+    pub pieces: Vec<PathPiece>,
+    /// For each of them the number of the piece of the path.
+    pub from: Vec<usize>,
+    /// The time that it takes, in s.
+    pub time: f64,
+    /// The grid.
+    pub course: Course,
+    /// The speed of the centre at each place, in mm/s.
+    pub speed: Vec<f64>,
+    /// What limits it there.
+    pub reason: Vec<Reason>,
+}
+
+/// Plans pieces within limits. `ends` are the speeds at which the path begins and ends, none where that is free.
+pub fn plan(pieces: &[PathPiece], weight: f64, limits: &Limits, ends: [Option<f64>; 2]) -> Plan {
+    let used = limits.with_margin(USED);
+    let course = Course::graded(pieces, weight, step_of(pieces, limits), ends);
+    let mut scale = vec![1.0; course.places.len()];
+    let mut round = 0;
+    loop {
+        let draft = Draft::new(pieces, course.clone(), &used, &scale);
+        round += 1;
+        let over = draft.over(&used);
+        if round >= ROUNDS || over.iter().all(|&over| over <= 1.0) {
+            return draft.finish(pieces, &used, over.iter().copied().fold(1.0, f64::max));
+        }
+        lessen(&mut scale, &over, &draft.course);
+    }
+}
+
+/// The longest step of the grid, in mm: what the motion covers in a few milliseconds at its fastest.
+fn step_of(pieces: &[PathPiece], limits: &Limits) -> f64 {
+    const TIME: f64 = 4e-3;
+    let [x, y] = limits.velocity;
+    let fastest = pieces.iter().map(|piece| piece.feed).fold(0.0, f64::max).min(x.hypot(y)).min(limits.feed);
+    fastest * TIME
+}
+
+/// One attempt.
+struct Draft {
+    course: Course,
+    caps: Vec<Cap>,
+    states: Vec<State>,
+}
+
+impl Draft {
+    fn new(pieces: &[PathPiece], course: Course, limits: &Limits, scale: &[f64]) -> Self {
+        let _ = pieces;
+        let caps = caps(&course, limits, scale);
+        let allowed: Vec<Allowed> = course
+            .places
+            .iter()
+            .zip(&caps)
+            .zip(scale)
+            .map(|((place, cap), &scale)| {
+                let mut place = *place;
+                place.feed = cap.speed;
+                Allowed::at(&place, &limits.with_margin([1.0, scale, 1.0]))
+            })
+            .collect();
+        let found = bound::within(&course, limits, &allowed);
+        let states = if limits.jerk.iter().all(|jerk| jerk.is_infinite()) {
+            smooth::as_it_is(&course, &found.speed)
+        } else {
+            let jerk = along(&course, &found.speed, limits, scale);
+            smooth::smooth(&course, &allowed, &found.speed, &jerk)
+        };
+        Self { course, caps, states }
+    }
+
+    /// By what factor each place asks for more than it bears; 1 where it does not.
+    fn over(&self, limits: &Limits) -> Vec<f64> {
+        let accelerations = self.accelerations();
+        let mut over: Vec<f64> = accelerations
+            .iter()
+            .map(|sides| {
+                let of = |a: &[f64; 2]| (a[0].abs() / limits.acceleration[0]).max(a[1].abs() / limits.acceleration[1]);
+                of(&sides[0]).max(of(&sides[1])).max(1.0)
+            })
+            .map(|over| if over < 1.0 + 4e-3 { 1.0 } else { over })
+            .collect();
+        if limits.jerk.iter().any(|jerk| jerk.is_finite()) {
+            self.jerks(limits, &accelerations, &mut over);
+        }
+        over
+    }
+
+    /// The accelerations of both axes in front of and behind each place.
+    fn accelerations(&self) -> Vec<[[f64; 2]; 2]> {
+        let of = |(place, state): (&super::course::Place, &State)| {
+            state.acceleration.map(|along| {
+                let a =
+                    place.direction * along + place.direction.left() * (place.curvature * state.speed * state.speed);
+                [a.re, a.im]
+            })
+        };
+        self.course.places.iter().zip(&self.states).map(of).collect()
+    }
+
+    /// Changes of acceleration over the window of a jerk, but across corners.
+    fn jerks(&self, limits: &Limits, accelerations: &[[[f64; 2]; 2]], over: &mut [f64]) {
+        let places = &self.course.places;
+        let mut times = Vec::with_capacity(places.len());
+        let mut time = 0.0;
+        for (k, place) in places.iter().enumerate() {
+            if place.step > 0.0 {
+                time += 2.0 * place.step / (self.states[k].speed + self.states[k - 1].speed);
+            }
+            times.push(time);
+        }
+        let mut from = 0;
+        for k in 1..places.len() {
+            if places[k].is_corner {
+                from = k;
+                continue;
+            }
+            while times[k] - times[from] > JERK_WINDOW && times[k] - times[from + 1] >= JERK_WINDOW {
+                from += 1;
+            }
+            // From the place at or before the window's start, so that the time is the window or a little more.
+            let time = (times[k] - times[from]).max(JERK_WINDOW);
+            let asked = (0..2)
+                .map(|axis| {
+                    (accelerations[k][1][axis] - accelerations[from][0][axis]).abs() / (limits.jerk[axis] * time)
+                })
+                .fold(0.0, f64::max);
+            if asked > 1.03 {
+                for over in &mut over[from..=k] {
+                    *over = over.max(asked);
+                }
+            }
+        }
+    }
+
+    /// The pieces; all of it slower by what it still asks too much.
+    fn finish(self, pieces: &[PathPiece], limits: &Limits, over: f64) -> Plan {
+        let [ax, ay] = limits.acceleration;
+        let tolerance = Tolerance { speed: SPEED_TOLERANCE, acceleration: ACCELERATION_TOLERANCE * ax.min(ay) };
+        let slower = if over > 1.0 { over.cbrt().max(over.sqrt()) } else { 1.0 };
+        let (mut planned, mut from, mut time) =
+            (Vec::with_capacity(pieces.len()), Vec::with_capacity(pieces.len()), 0.0);
+        let mut start = 0;
+        for (number, piece) in pieces.iter().enumerate() {
+            let end = start + self.course.places[start..].iter().take_while(|place| place.piece == number).count();
+            let (places, states) = (&self.course.places[start..end], &self.states[start..end]);
+            start = end;
+            let Some(Parts { laws }) = Parts::of(piece, places, states, tolerance) else {
+                // A way without a law is run at the lowest of its speeds.
+                let least = states.iter().zip(places).map(|(s, p)| s.speed / p.stretch).fold(f64::INFINITY, f64::min);
+                let law = Law { feeds: [least; 4], duration: piece.segment_length() / least };
+                push(&mut planned, piece, piece.interval, &law, slower, [true; 2]);
+                from.push(number);
+                time += law.duration * slower;
+                continue;
+            };
+            let (mut first, count) = (0, laws.len());
+            for (k, (last, law)) in laws.into_iter().enumerate() {
+                let interval = [places[first].xi, places[last].xi];
+                push(&mut planned, piece, interval, &law, slower, [k == 0, k + 1 == count]);
+                from.push(number);
+                time += law.duration * slower;
+                first = last;
+            }
+        }
+        let speed: Vec<f64> = self.states.iter().map(|state| state.speed / slower).collect();
+        let reason = self.reasons(limits);
+        Plan { pieces: planned, from, time, course: self.course, speed, reason }
+    }
+
+    /// What limits each place: its cap where it is reached, else the acceleration or the jerk of an axis.
+    fn reasons(&self, limits: &Limits) -> Vec<Reason> {
+        let accelerations = self.accelerations();
+        let of = |((cap, state), sides): ((&Cap, &State), &[[f64; 2]; 2])| {
+            if state.speed >= cap.speed * (1.0 - 1e-3) {
+                return cap.reason;
+            }
+            let part = |axis: usize| sides[0][axis].abs().max(sides[1][axis].abs()) / limits.acceleration[axis];
+            let axis = usize::from(part(1) > part(0));
+            if part(axis) > 0.97 { Reason::Acceleration(axis) } else { Reason::Jerk(axis) }
+        };
+        self.caps.iter().zip(&self.states).zip(&accelerations).map(of).collect()
+    }
+}
+
+fn push(all: &mut Vec<PathPiece>, piece: &PathPiece, interval: [f64; 2], law: &Law, slower: f64, whole: [bool; 2]) {
+    let (feed, profile) = law.profile();
+    let mut part = if whole == [true; 2] { *piece } else { piece.over(interval) };
+    (part.feed, part.profile, part.start, part.end) = (feed / slower, Some(profile), None, None);
+    part.start_corner = piece.start_corner.filter(|_| whole[0]);
+    part.end_corner = piece.end_corner.filter(|_| whole[1]);
+    all.push(part);
+}
+
+/// The jerk along the way that the axes leave at each place beside what the bend takes.
+fn along(course: &Course, speed: &[f64], limits: &Limits, scale: &[f64]) -> Vec<f64> {
+    /// What is left at least.
+    const LEAST: f64 = 0.2;
+    let places = &course.places;
+    (0..places.len())
+        .map(|k| {
+            let place = &places[k];
+            let v = speed[k];
+            let before = k.saturating_sub(1);
+            let (step, bends) = (place.step, place.curvature - places[before].curvature);
+            let bending = if step > 0.0 { bends / step.max(v * JERK_WINDOW) } else { 0.0 };
+            let a = if step > 0.0 { (v * v - speed[before] * speed[before]) / (2.0 * step) } else { 0.0 };
+            let along = [place.direction.re, place.direction.im];
+            let left = place.direction.left();
+            let across = [left.re, left.im];
+            (0..2)
+                .map(|axis| {
+                    let taken = ((bending * across[axis] - place.curvature.powi(2) * along[axis]) * v.powi(3)).abs()
+                        + (3.0 * place.curvature * across[axis] * v * a).abs();
+                    let jerk = limits.jerk[axis];
+                    (jerk - taken).max(LEAST * jerk) * scale[k] / along[axis].abs()
+                })
+                .fold(f64::INFINITY, f64::min)
+        })
+        .collect()
+}
+
+/// Gives less to the places that ask for too much, and to their neighbours.
+fn lessen(scale: &mut [f64], over: &[f64], course: &Course) {
+    /// Places on each side that share it.
+    const NEAR: usize = 6;
+    let _ = course;
+    let mut next = scale.to_vec();
+    for (k, &over) in over.iter().enumerate() {
+        if over > 1.0 {
+            let less = (1.0 / over).max(0.7) * 0.995;
+            let (low, high) = (k.saturating_sub(NEAR), (k + NEAR + 1).min(scale.len()));
+            for j in low..high {
+                next[j] = next[j].min(scale[j] * less);
+            }
+        }
+    }
+    scale.copy_from_slice(&next);
+}
