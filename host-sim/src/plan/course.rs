@@ -40,36 +40,25 @@ pub struct Course {
     pub ends: [Option<f64>; 2],
 }
 
-/// How the ways between places grow away from the ends of a piece, where a motion may begin or end at rest.
-const GROWTH: f64 = 1.35;
-
-/// The first of these, as a part of the longest.
-const FINEST: f64 = 2e-3;
-
 impl Course {
     /// The way of a path, in steps of at most about `step` mm and at least sixteen a piece.
     pub fn new(path: &Path, step: f64) -> Self {
         let rest = path.header.rest.then_some(0.0);
-        let even = |piece: &PathPiece| {
+        let even = |_: usize, piece: &PathPiece| {
             let count = (piece.centre_length() / step).ceil().clamp(16.0, 1e6) as u32;
             (0..=count).map(|k| f64::from(k) / f64::from(count)).collect()
         };
         Self { places: places(&path.pieces, path.weight, even), ends: [rest; 2] }
     }
 
-    /// The way of some pieces, in steps of at most about `step` mm that are finer towards the ends of pieces, where it turns sharply or
-    /// begins and ends. A line shorter than a step is one.
-    pub fn graded(pieces: &[PathPiece], weight: f64, step: f64, ends: [Option<f64>; 2]) -> Self {
-        let last = pieces.len().saturating_sub(1);
-        let mut number = 0;
-        let graded = |piece: &PathPiece| {
-            let hard = [piece.start_corner.is_some() || number == 0, piece.end_corner.is_some() || number == last];
-            number += 1;
-            // A curve may change its curvature within a step.
-            let least = if matches!(piece.segment, Segment::Line(_)) { 1.0 } else { 6.0 };
-            grades(piece.centre_length() / step, least, hard)
-        };
-        Self { places: places(pieces, weight, graded), ends }
+    /// The way of some pieces through the places that `parts` says for each, by its number: parts of its parameter interval, from 0 to 1.
+    pub fn through(
+        pieces: &[PathPiece],
+        weight: f64,
+        ends: [Option<f64>; 2],
+        parts: impl FnMut(usize, &PathPiece) -> Vec<f64>,
+    ) -> Self {
+        Self { places: places(pieces, weight, parts), ends }
     }
 
     /// Its length in mm.
@@ -78,46 +67,14 @@ impl Course {
     }
 }
 
-/// Places on a piece of so many steps as parts of it, 0 to 1: even, at least so many, and finer towards hard ends.
-fn grades(steps: f64, least: f64, hard: [bool; 2]) -> Vec<f64> {
-    let count = steps.ceil().clamp(least, 1e6);
-    let even = 1.0 / count;
-    // A piece of one step has no ends to be fine at: a program of thousands of lines.
-    let fine = |hard: bool| -> Vec<f64> {
-        if !hard || steps < 1.0 {
-            return Vec::new();
-        }
-        let widths = std::iter::successors(Some(FINEST * even), |width| Some(width * GROWTH));
-        let sums = widths.scan(0.0, |sum, width| {
-            *sum += width;
-            Some((*sum, width))
-        });
-        sums.take_while(|&(sum, width)| width < even && sum < 0.45).map(|(sum, _)| sum).collect()
-    };
-    let (first, last) = (fine(hard[0]), fine(hard[1]));
-    let (from, to) = (first.last().copied().unwrap_or(0.0), 1.0 - last.last().copied().unwrap_or(0.0));
-    let middle = ((to - from) * count).ceil().max(1.0);
-    let mut all = Vec::with_capacity(first.len() + last.len() + middle as usize + 1);
-    if from > 0.0 {
-        all.push(0.0);
-    }
-    all.extend(first.iter().take(first.len().saturating_sub(1)));
-    all.extend((0..=middle as u32).map(|k| from + (to - from) * f64::from(k) / middle));
-    all.extend(last.iter().rev().skip(1).map(|sum| 1.0 - sum));
-    if to < 1.0 {
-        all.push(1.0);
-    }
-    all
-}
-
 /// The places of pieces, at the parts of each that `parts` says.
-fn places(pieces: &[PathPiece], weight: f64, mut parts: impl FnMut(&PathPiece) -> Vec<f64>) -> Vec<Place> {
+fn places(pieces: &[PathPiece], weight: f64, mut parts: impl FnMut(usize, &PathPiece) -> Vec<f64>) -> Vec<Place> {
     let mut places: Vec<Place> = Vec::new();
     for (number, piece) in pieces.iter().enumerate() {
         let [from, to] = piece.interval;
         let lengths = [from, to].map(|xi| piece.segment.length_to(xi));
         let mut before = from;
-        for (k, part) in parts(piece).into_iter().enumerate() {
+        for (k, part) in parts(number, piece).into_iter().enumerate() {
             let xi = if part == 1.0 { to } else { from + (to - from) * part };
             let step = if k == 0 { 0.0 } else { length(piece, before, xi) };
             before = xi;

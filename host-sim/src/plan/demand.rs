@@ -82,7 +82,7 @@ impl<'a> Recorder<'a> {
             Some(axis) => peaks::Limits { velocity: axis.velocity, acceleration: axis.acceleration, jerk: axis.jerk },
             None => peaks::Limits { velocity: f64::INFINITY, acceleration: f64::INFINITY, jerk: f64::INFINITY },
         };
-        let standard = Standard { rounding: ERROR_MM, ..Standard::new([of(0), of(1), of(2)]) };
+        let standard = Standard { rounding: ERROR_MM, jerk_ticks: JERK_TICKS, ..Standard::new([of(0), of(1), of(2)]) };
         let found = peaks(&self.setpoints, &self.corners, &standard);
         let mm = units.mm();
         let asked = |peak: &Peak| Asked {
@@ -110,6 +110,9 @@ impl<'a> Recorder<'a> {
 /// What a setpoint of the f32 tick may be off by in mm, so that no verdict hangs on it: four units. Between 32 and 64 mm from the
 /// middle of a piece a roundoff of f32 is half a unit, and a point is the sum of some.
 const ERROR_MM: f64 = 8.0 * peaks::ROUNDING;
+
+/// The ticks over which a jerk is a mean, as the planner promises it ([`super::limits::JERK_WINDOW`]).
+const JERK_TICKS: usize = 8;
 
 /// The step of the grid on which the least time is found, in mm.
 const STEP_MM: f64 = 0.02;

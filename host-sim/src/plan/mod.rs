@@ -6,7 +6,8 @@
 //! | [`course`] | the centre's way as a grid: direction, curvature and the job's own feed at each place |
 //! | [`caps`] | the largest speed at each place by itself, and what says so |
 //! | [`bound`](mod@bound) | the least time that velocities and accelerations leave: what no plan can be faster than |
-//! | [`smooth`] | lowers a speed profile until no jerk is above its limit |
+//! | `smooth` | lowers a speed profile until no jerk is above its limit |
+//! | `grid` | how near to each other the places of a plan stand |
 //! | [`law`] | the profiles of pieces that make such speeds |
 //! | [`planner`] | all of that for a path |
 //! | [`demand`] | what a simulated run asks of a machine |
@@ -18,10 +19,11 @@ pub mod demand;
 pub mod law;
 pub mod limits;
 pub mod planner;
+mod grid;
 mod smooth;
 
 pub use bound::{Bound, bound};
 pub use course::Course;
 pub use demand::{Demand, Recorder};
 pub use limits::Limits;
-pub use planner::{Plan, plan};
+pub use planner::{Plan, plan, planned};

@@ -3,10 +3,13 @@
 use super::bound::{self, Allowed};
 use super::caps::{Cap, Reason, caps};
 use super::course::Course;
+use super::grid;
 use super::law::{Law, Parts, Tolerance};
 use super::limits::{JERK_WINDOW, Limits};
 use super::smooth::{self, State};
-use crate::path::PathPiece;
+use crate::path::{Path, PathPiece};
+use shared::pace::PaceLimits;
+use shared::piece::Header;
 
 /// Parts of velocity, acceleration and jerk that a plan uses: what lies between places, and what a cubic departs by, is in the rest.
 const USED: [f64; 3] = [0.999, 0.994, 0.96];
@@ -35,10 +38,32 @@ pub struct Plan {
     pub reason: Vec<Reason>,
 }
 
+/// The part of an axis' acceleration and jerk that a hold adds to what the plan asks for, since the plan may ask for all of it.
+const HOLD: f64 = 0.25;
+
+/// A path as it is planned: its pieces have profiles, and begin and end at the speeds `ends`, none where that is free.
+///
+/// An override above 100 % would ask for more than the plan, so there is none. A hold takes a quarter of the accelerations and jerks
+/// on top of what the plan asks for where it happens.
+pub fn planned(path: &Path, limits: &Limits, ends: [Option<f64>; 2]) -> (Path, Plan) {
+    let plan = plan(&path.pieces, path.weight, limits, ends);
+    let [x, y] = limits.velocity;
+    let fastest = plan.speed.iter().copied().fold(0.0, f64::max).min(x.hypot(y));
+    let part = |of: [f64; 2]| (HOLD * of[0].min(of[1]) / fastest).clamp(0.0, 1e6) as f32;
+    let slowest = PaceLimits::SLOWEST;
+    let pace = PaceLimits {
+        slope: part(limits.acceleration).max(slowest.slope),
+        bend: part(limits.jerk).max(slowest.bend),
+        most: 1.0,
+    };
+    let header = Header { rest: false, pace, ..path.header };
+    (Path { pieces: plan.pieces.clone(), header, ..path.clone() }, plan)
+}
+
 /// Plans pieces within limits. `ends` are the speeds at which the path begins and ends, none where that is free.
 pub fn plan(pieces: &[PathPiece], weight: f64, limits: &Limits, ends: [Option<f64>; 2]) -> Plan {
     let used = limits.with_margin(USED);
-    let course = Course::graded(pieces, weight, step_of(pieces, limits), ends);
+    let course = grid::places(pieces, weight, &used, ends);
     let mut scale = vec![1.0; course.places.len()];
     let mut round = 0;
     loop {
@@ -50,14 +75,6 @@ pub fn plan(pieces: &[PathPiece], weight: f64, limits: &Limits, ends: [Option<f6
         }
         lessen(&mut scale, &over, &draft.course);
     }
-}
-
-/// The longest step of the grid, in mm: what the motion covers in a few milliseconds at its fastest.
-fn step_of(pieces: &[PathPiece], limits: &Limits) -> f64 {
-    const TIME: f64 = 4e-3;
-    let [x, y] = limits.velocity;
-    let fastest = pieces.iter().map(|piece| piece.feed).fold(0.0, f64::max).min(x.hypot(y)).min(limits.feed);
-    fastest * TIME
 }
 
 /// One attempt.

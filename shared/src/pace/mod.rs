@@ -40,6 +40,9 @@ impl PaceLimits<f32> {
     /// For a path of which nothing is known: to a stop in 0.35 s, overrides up to 200 %.
     pub const USUAL: Self = Self { slope: 4.0, bend: 40.0, most: 2.0 };
 
+    /// Slower ones would make stops too long for [`Pacer::activate`].
+    pub const SLOWEST: Self = Self { slope: 0.6, bend: 6.0, most: 1.0 };
+
     /// The same for the f64 twin.
     pub fn exact<T: Real>(&self) -> PaceLimits<T> {
         let [slope, bend, most] = [self.slope, self.bend, self.most].map(|x| T::lit(f64::from(x)));

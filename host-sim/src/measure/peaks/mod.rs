@@ -85,6 +85,9 @@ pub struct Standard {
     /// The largest error of a coordinate of a setpoint, in mm. [`ROUNDING`] for what is computed in doubles; the controller's
     /// singles add to it on pieces that reach far from their start, as the module says.
     pub rounding: f64,
+    /// The time in ticks over which a jerk is a mean at the least, 1 or more: a step of acceleration is none in itself, and what it is over
+    /// this time counts. Strides are no finer.
+    pub jerk_ticks: usize,
 }
 
 impl Standard {
@@ -97,6 +100,7 @@ impl Standard {
             centripetal: together(|limits| limits.acceleration),
             share: SHARE,
             rounding: ROUNDING,
+            jerk_ticks: 1,
         }
     }
 }
@@ -181,7 +185,8 @@ pub fn peaks(setpoints: &[Position], corners: &[usize], standard: &Standard) -> 
     let Standard { rounding, .. } = *standard;
     let axis = |axis: usize| {
         let peak = |order: u32, limit| {
-            motion.peak(order, limit, rounding, |start, stride| {
+            let finest = if order == 3 { standard.jerk_ticks } else { 1 };
+            motion.peak(order, finest, limit, rounding, |start, stride| {
                 let value = difference(setpoints, axis, order, start, stride).abs();
                 (value, noise(order, stride, rounding))
             })
@@ -195,8 +200,8 @@ pub fn peaks(setpoints: &[Position], corners: &[usize], standard: &Standard) -> 
     Peaks {
         axes: [0, 1, 2].map(axis),
         feed: motion
-            .peak(1, standard.feed, error, |start, stride| (norm(vector(1, start, stride)), noise(1, stride, error))),
-        centripetal: motion.peak(2, standard.centripetal, error, |start, stride| {
+            .peak(1, 1, standard.feed, error, |start, stride| (norm(vector(1, start, stride)), noise(1, stride, error))),
+        centripetal: motion.peak(2, 1, standard.centripetal, error, |start, stride| {
             let (acceleration, off) = (vector(2, start, stride), noise(2, stride, error));
             let velocity = vector(1, start, 2 * stride);
             // A velocity that is off by d points off by an angle whose sine is d/|v| at most, and so much of the acceleration
@@ -230,10 +235,10 @@ impl Motion {
     }
 
     /// The peak of what `at` gives, with its noise, for the stencil that begins at a setpoint and has a stride.
-    fn peak(&self, order: u32, limit: f64, error: f64, at: impl Fn(usize, usize) -> (f64, f64)) -> Peak {
-        let stride = self.stride(order, limit, error);
+    fn peak(&self, order: u32, finest: usize, limit: f64, error: f64, at: impl Fn(usize, usize) -> (f64, f64)) -> Peak {
+        let stride = self.stride(order, limit, error).max(finest);
         let (mut measured, mut proven) = (Found::default(), Found::default());
-        let finer = (0..usize::BITS).map(|k| 1 << k).take_while(|&finer| finer < stride);
+        let finer = (0..usize::BITS).map(|k| finest << k).take_while(|&finer| finer < stride);
         for stride in finer.chain([stride]) {
             let Some(found) = self.search(order as usize * stride, |start| at(start, stride)) else { continue };
             if found.certain() > proven.certain() {

@@ -1,0 +1,118 @@
+//! Where the places of a plan stand: as dense as the speed there asks for.
+//!
+//! A step takes a few milliseconds at the largest speed that a place can be passed at by itself, and neighbouring steps differ by a part
+//! of them: a slow corner on a fast way, or a tight bend in a long curve, has places near to each other around it and nowhere else.
+
+use shared::curve::Segment;
+
+use super::caps::{Cap, caps};
+use super::course::{Course, Place};
+use super::limits::Limits;
+use crate::path::PathPiece;
+
+/// The time that a step takes at most, in s.
+const TIME: f64 = 4e-3;
+
+/// By what part of the way between them two steps may differ.
+const GROWTH: f64 = 0.3;
+
+/// By what part of itself the stretch may change over a step: towards a cusp of the offset the contact point runs away from the centre.
+const STRETCHING: f64 = 0.1;
+
+/// Steps of a curve between the places where its speed is looked at first.
+const LOOKS: u32 = 24;
+
+/// The places for a plan within limits.
+pub(super) fn places(pieces: &[PathPiece], weight: f64, limits: &Limits, ends: [Option<f64>; 2]) -> Course {
+    let coarse = Course::through(pieces, weight, ends, |_, piece| match piece.segment {
+        Segment::Line(_) | Segment::Arc(_) => vec![0.0, 1.0],
+        Segment::Ph(_) | Segment::Spline(_) => (0..=LOOKS).map(|k| f64::from(k) / f64::from(LOOKS)).collect(),
+    });
+    let caps = caps(&coarse, limits, &vec![1.0; coarse.places.len()]);
+    let least = first_step(limits);
+    let wanted: Vec<f64> = coarse.places.iter().zip(&caps).map(|(place, cap)| step(place, cap, least)).collect();
+    let mut start = 0;
+    Course::through(pieces, weight, ends, |number, piece| {
+        let end = start + coarse.places[start..].iter().take_while(|place| place.piece == number).count();
+        let parts = parts(piece, &coarse.places[start..end], &wanted[start..end], fastest(piece, limits) * TIME);
+        start = end;
+        parts
+    })
+}
+
+/// The way from rest in two steps' time, in mm.
+fn first_step(limits: &Limits) -> f64 {
+    let [ax, ay] = limits.acceleration;
+    let [jx, jy] = limits.jerk;
+    let (a, j) = (ax.min(ay), jx.min(jy));
+    if j.is_finite() { j * (2.0 * TIME).powi(3) / 6.0 } else { 0.5 * a * TIME * TIME }
+}
+
+fn step(place: &Place, cap: &Cap, least: f64) -> f64 {
+    let even = STRETCHING * place.stretch * place.stretch / place.stretching.abs();
+    (cap.speed * TIME + least).min(even)
+}
+
+/// The largest speed that anything allows on a piece.
+fn fastest(piece: &PathPiece, limits: &Limits) -> f64 {
+    let [x, y] = limits.velocity;
+    piece.feed.max(1e-3).min(x.hypot(y)).min(limits.feed) + 1e-3
+}
+
+/// The parts of a piece whose steps are what is wanted at the places looked at, and between these at most as much as growth allows.
+fn parts(piece: &PathPiece, places: &[Place], wanted: &[f64], longest: f64) -> Vec<f64> {
+    /// More places than that on one piece say nothing new.
+    const MOST: usize = 100_000;
+    let length: f64 = match piece.segment {
+        Segment::Line(_) | Segment::Arc(_) => piece.centre_length(),
+        Segment::Ph(_) | Segment::Spline(_) => places.iter().map(|place| place.step).sum(),
+    };
+    let straight = matches!(piece.segment, Segment::Line(_));
+    if straight && length <= wanted.iter().copied().fold(longest, f64::min) {
+        return vec![0.0, 1.0];
+    }
+    // Way and step where the speed was looked at; the parameter is even in between.
+    let mut ways = Vec::with_capacity(places.len());
+    let mut way = 0.0;
+    for place in places {
+        way += place.step;
+        ways.push(if places.len() == 2 { length * ways.len() as f64 } else { way });
+    }
+    let mut steps = wanted.to_vec();
+    for k in 1..steps.len() {
+        steps[k] = steps[k].min(steps[k - 1] + GROWTH * (ways[k] - ways[k - 1]));
+    }
+    for k in (1..steps.len()).rev() {
+        steps[k - 1] = steps[k - 1].min(steps[k] + GROWTH * (ways[k] - ways[k - 1]));
+    }
+    let curved = if straight { longest } else { longest.min(length / 6.0) };
+    let last = places.len() - 1;
+    let mut marks = vec![0.0];
+    let (mut at, mut look) = (0.0, 0);
+    while marks.len() < MOST {
+        while look + 1 < last && ways[look + 1] <= at {
+            look += 1;
+        }
+        let here = (steps[look] + GROWTH * (at - ways[look])).min(steps[look + 1] + GROWTH * (ways[look + 1] - at));
+        // Over the step itself the wanted one may fall: so much of it is sure.
+        let step = here.min(curved) / (1.0 + GROWTH);
+        at += step.max(1e-7 * length);
+        if at >= length {
+            break;
+        }
+        marks.push(at);
+    }
+    // The last steps end at the end.
+    let scale = length / at;
+    let mut parts: Vec<f64> = marks.iter().map(|mark| mark * scale).map(|mark| part_of(mark, &ways)).collect();
+    parts.push(1.0);
+    parts
+}
+
+/// The part of the parameter interval at a way, evenly between the places that were looked at.
+fn part_of(way: f64, ways: &[f64]) -> f64 {
+    let last = ways.len() - 1;
+    let behind = ways.partition_point(|&at| at <= way).clamp(1, last);
+    let (from, to) = (ways[behind - 1], ways[behind]);
+    ((behind - 1) as f64 + ((way - from) / (to - from)).clamp(0.0, 1.0)) / last as f64
+}
