@@ -16,17 +16,23 @@ const TIME: f64 = 4e-3;
 /// By what part of the way between them two steps may differ.
 const GROWTH: f64 = 0.3;
 
+/// The shortest way of the centre and of the contact point that is a motion to the controller, in mm, and more than twice that.
+const LEAST: f64 = 1e-5;
+
 /// By what part of itself the stretch may change over a step: towards a cusp of the offset the contact point runs away from the centre.
 const STRETCHING: f64 = 0.1;
 
+/// The largest turn over a step, in radians: between two places a direction is off their chord by an eighth of its square.
+const TURN: f64 = 0.08;
+
 /// Steps of a curve between the places where its speed is looked at first.
-const LOOKS: u32 = 24;
+const LOOKS: u32 = 16;
 
 /// The places for a plan within limits.
 pub(super) fn places(pieces: &[PathPiece], weight: f64, limits: &Limits, ends: [Option<f64>; 2]) -> Course {
     let coarse = Course::through(pieces, weight, ends, |_, piece| match piece.segment {
-        Segment::Line(_) | Segment::Arc(_) => vec![0.0, 1.0],
-        Segment::Ph(_) | Segment::Spline(_) => (0..=LOOKS).map(|k| f64::from(k) / f64::from(LOOKS)).collect(),
+        Segment::Line(_) => vec![0.0, 1.0],
+        _ => (0..=LOOKS).map(|k| f64::from(k) / f64::from(LOOKS)).collect(),
     });
     let caps = caps(&coarse, limits, &vec![1.0; coarse.places.len()]);
     let least = first_step(limits);
@@ -50,7 +56,7 @@ fn first_step(limits: &Limits) -> f64 {
 
 fn step(place: &Place, cap: &Cap, least: f64) -> f64 {
     let even = STRETCHING * place.stretch * place.stretch / place.stretching.abs();
-    (cap.speed * TIME + least).min(even)
+    (cap.speed * TIME + least).min(even).min(TURN / place.curvature.abs())
 }
 
 /// The largest speed that anything allows on a piece.
@@ -63,12 +69,10 @@ fn fastest(piece: &PathPiece, limits: &Limits) -> f64 {
 fn parts(piece: &PathPiece, places: &[Place], wanted: &[f64], longest: f64) -> Vec<f64> {
     /// More places than that on one piece say nothing new.
     const MOST: usize = 100_000;
-    let length: f64 = match piece.segment {
-        Segment::Line(_) | Segment::Arc(_) => piece.centre_length(),
-        Segment::Ph(_) | Segment::Spline(_) => places.iter().map(|place| place.step).sum(),
-    };
+    let length: f64 = places.iter().map(|place| place.step).sum();
     let straight = matches!(piece.segment, Segment::Line(_));
-    if straight && length <= wanted.iter().copied().fold(longest, f64::min) {
+    let stretch = places.iter().map(|place| place.stretch).fold(1.0, f64::max);
+    if length <= LEAST * stretch || (straight && length <= wanted.iter().copied().fold(longest, f64::min)) {
         return vec![0.0, 1.0];
     }
     // Way and step where the speed was looked at; the parameter is even in between.
@@ -76,7 +80,7 @@ fn parts(piece: &PathPiece, places: &[Place], wanted: &[f64], longest: f64) -> V
     let mut way = 0.0;
     for place in places {
         way += place.step;
-        ways.push(if places.len() == 2 { length * ways.len() as f64 } else { way });
+        ways.push(way);
     }
     let mut steps = wanted.to_vec();
     for k in 1..steps.len() {
@@ -96,8 +100,9 @@ fn parts(piece: &PathPiece, places: &[Place], wanted: &[f64], longest: f64) -> V
         let here = (steps[look] + GROWTH * (at - ways[look])).min(steps[look + 1] + GROWTH * (ways[look + 1] - at));
         // Over the step itself the wanted one may fall: so much of it is sure.
         let step = here.min(curved) / (1.0 + GROWTH);
-        at += step.max(1e-7 * length);
-        if at >= length {
+        at += step.max(2e-5 * length).max(LEAST * stretch);
+        if at >= length - LEAST * stretch {
+            at = at.max(length);
             break;
         }
         marks.push(at);

@@ -35,6 +35,19 @@ impl Law {
         (feeds.iter().all(|&feed| feed >= 0.0) && feeds[1] + feeds[2] > 0.0).then_some(Self { feeds, duration })
     }
 
+    /// Between two feeds at constant slope, whatever the slopes at their ends; between two rests as if from one to the other at
+    /// `acceleration` at the most.
+    pub(super) fn plain(p0: f64, p1: f64, length: f64, acceleration: f64) -> Self {
+        if p0 + p1 > 0.0 {
+            let third = (p1 - p0) / 3.0;
+            return Self { feeds: [p0, p0 + third, p1 - third, p1], duration: 2.0 * length / (p0 + p1) };
+        }
+        // b = (0, x, x, 0) has the slope 3 x/D at its ends, and L = D x/2.
+        let duration = (6.0 * length / acceleration).sqrt();
+        let most = 2.0 * length / duration;
+        Self { feeds: [0.0, most, most, 0.0], duration }
+    }
+
     /// The feed in mm/s, its slope in mm/s^2 and the way in mm at a time from 0 to the duration.
     pub fn at(&self, time: f64) -> [f64; 3] {
         let [b0, b1, b2, b3] = self.feeds;
@@ -91,9 +104,15 @@ pub(super) struct Parts {
 }
 
 impl Parts {
-    /// As few as follow the speeds: each entry is the place up to which the law holds. None where even one step has no law.
-    pub(super) fn of(piece: &PathPiece, places: &[Place], states: &[State], tolerance: Tolerance) -> Option<Self> {
+    /// As few as follow the speeds: each entry is the place up to which the law holds.
+    pub(super) fn of(piece: &PathPiece, places: &[Place], states: &[State], tolerance: Tolerance) -> Self {
         let length = piece.segment_length();
+        let plain = |i: usize, j: usize| {
+            let way = (places[j].fraction - places[i].fraction) * length;
+            let feed = |k: usize| states[k].speed / places[k].stretch;
+            // So slow that nothing tells the difference.
+            Law::plain(feed(i), feed(j), way, tolerance.acceleration)
+        };
         let law = |i: usize, j: usize| {
             let way = (places[j].fraction - places[i].fraction) * length;
             Law::between(contact(&places[i], &states[i], 1), contact(&places[j], &states[j], 0), way)
@@ -119,7 +138,7 @@ impl Parts {
         let mut i = 0;
         while i < last {
             // The farthest place, by doubling and then halving the stride.
-            let (mut best, mut stride) = ((i + 1, law(i, i + 1)?), 1);
+            let (mut best, mut stride) = ((i + 1, law(i, i + 1).unwrap_or_else(|| plain(i, i + 1))), 1);
             while best.0 < last {
                 let j = (best.0 + stride).min(last);
                 match fits(i, j) {
@@ -142,6 +161,6 @@ impl Parts {
             laws.push(best);
             i = best.0;
         }
-        Some(Self { laws })
+        Self { laws }
     }
 }

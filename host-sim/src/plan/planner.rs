@@ -185,15 +185,7 @@ impl Draft {
             let end = start + self.course.places[start..].iter().take_while(|place| place.piece == number).count();
             let (places, states) = (&self.course.places[start..end], &self.states[start..end]);
             start = end;
-            let Some(Parts { laws }) = Parts::of(piece, places, states, tolerance) else {
-                // A way without a law is run at the lowest of its speeds.
-                let least = states.iter().zip(places).map(|(s, p)| s.speed / p.stretch).fold(f64::INFINITY, f64::min);
-                let law = Law { feeds: [least; 4], duration: piece.segment_length() / least };
-                push(&mut planned, piece, piece.interval, &law, slower, [true; 2]);
-                from.push(number);
-                time += law.duration * slower;
-                continue;
-            };
+            let Parts { laws } = Parts::of(piece, places, states, tolerance);
             let (mut first, count) = (0, laws.len());
             for (k, (last, law)) in laws.into_iter().enumerate() {
                 let interval = [places[first].xi, places[last].xi];
