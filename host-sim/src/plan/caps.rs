@@ -82,7 +82,7 @@ pub(super) fn caps(course: &Course, limits: &Limits, scale: &[f64]) -> Vec<Cap> 
 }
 
 /// What one place bears without its neighbours.
-fn alone(place: &Place, limits: &Limits, scale: f64) -> Cap {
+pub(super) fn alone(place: &Place, limits: &Limits, scale: f64) -> Cap {
     let mut cap = Cap { speed: place.feed.min(limits.feed), reason: Reason::Feed };
     let curvature = place.curvature.abs();
     cap.lower((limits.centripetal * scale / curvature).sqrt(), Reason::Centripetal);

@@ -5,13 +5,16 @@
 
 use shared::curve::Segment;
 
-use super::caps::{Cap, caps};
+use super::caps::{Cap, alone, caps};
 use super::course::{Course, Place};
 use super::limits::Limits;
 use crate::path::PathPiece;
 
 /// The time that a step takes at most, in s.
 const TIME: f64 = 4e-3;
+
+/// The part of a speed that a peak may sag by between two places.
+const SAG: f64 = 1e-3;
 
 /// By what part of the way between them two steps may differ.
 const GROWTH: f64 = 0.3;
@@ -36,11 +39,16 @@ pub(super) fn places(pieces: &[PathPiece], weight: f64, limits: &Limits, ends: [
     });
     let caps = caps(&coarse, limits, &vec![1.0; coarse.places.len()]);
     let least = first_step(limits);
-    let wanted: Vec<f64> = coarse.places.iter().zip(&caps).map(|(place, cap)| step(place, cap, least)).collect();
+    let [jx, jy] = limits.jerk;
+    let wanted: Vec<f64> =
+        coarse.places.iter().zip(&caps).map(|(place, cap)| step(place, cap, jx.min(jy), least)).collect();
     let mut start = 0;
     Course::through(pieces, weight, ends, |number, piece| {
         let end = start + coarse.places[start..].iter().take_while(|place| place.piece == number).count();
-        let parts = parts(piece, &coarse.places[start..end], &wanted[start..end], fastest(piece, limits) * TIME);
+        // Away from its ends: a line is the same all along.
+        let within = coarse.places[start..end].iter().map(|place| step(place, &alone(place, limits, 1.0), jx.min(jy), least));
+        let longest = within.fold(0.0, f64::max);
+        let parts = parts(piece, &coarse.places[start..end], &wanted[start..end], longest);
         start = end;
         parts
     })
@@ -54,15 +62,11 @@ fn first_step(limits: &Limits) -> f64 {
     if j.is_finite() { j * (2.0 * TIME).powi(3) / 6.0 } else { 0.5 * a * TIME * TIME }
 }
 
-fn step(place: &Place, cap: &Cap, least: f64) -> f64 {
+fn step(place: &Place, cap: &Cap, jerk: f64, least: f64) -> f64 {
+    // Between two places at constant jerk a speed is off its chord by J t^2/8.
+    let time = (8.0 * SAG * cap.speed / jerk).sqrt().clamp(0.25 * TIME, TIME);
     let even = STRETCHING * place.stretch * place.stretch / place.stretching.abs();
-    (cap.speed * TIME + least).min(even).min(TURN / place.curvature.abs())
-}
-
-/// The largest speed that anything allows on a piece.
-fn fastest(piece: &PathPiece, limits: &Limits) -> f64 {
-    let [x, y] = limits.velocity;
-    piece.feed.max(1e-3).min(x.hypot(y)).min(limits.feed) + 1e-3
+    (cap.speed * time + least).min(even).min(TURN / place.curvature.abs())
 }
 
 /// The parts of a piece whose steps are what is wanted at the places looked at, and between these at most as much as growth allows.

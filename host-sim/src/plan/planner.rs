@@ -4,7 +4,7 @@ use super::bound::{self, Allowed};
 use super::caps::{Cap, Reason, caps};
 use super::course::Course;
 use super::grid;
-use super::law::{Law, Parts, Tolerance};
+use super::law::{self, Law, Parts, Tolerance};
 use super::limits::{JERK_WINDOW, Limits};
 use super::smooth::{self, State};
 use crate::path::{Path, PathPiece};
@@ -17,6 +17,13 @@ const USED: [f64; 3] = [0.999, 0.994, 0.96];
 /// How far a law may be from the speeds that it follows, as a part of the speed, and of the acceleration limit.
 const SPEED_TOLERANCE: f64 = 5e-4;
 const ACCELERATION_TOLERANCE: f64 = 4e-3;
+
+/// By how much the middle of a step may be above a cap and an acceleration that a plan uses.
+const MIDDLE_SPEED: f64 = 2e-3;
+const MIDDLE_ACCELERATION: f64 = 6e-3;
+
+/// What a step without a law counts as: too much.
+const WITHOUT_LAW: f64 = 1.3;
 
 /// How often places where a plan asks for too much are given less.
 const ROUNDS: usize = 12;
@@ -65,11 +72,12 @@ pub fn plan(pieces: &[PathPiece], weight: f64, limits: &Limits, ends: [Option<f6
     let used = limits.with_margin(USED);
     let course = grid::places(pieces, weight, &used, ends);
     let mut scale = vec![1.0; course.places.len()];
+    let lengths: Vec<f64> = pieces.iter().map(PathPiece::segment_length).collect();
     let mut round = 0;
     loop {
         let draft = Draft::new(pieces, course.clone(), &used, &scale);
         round += 1;
-        let over = draft.over(&used);
+        let over = draft.over(&used, &lengths);
         if round >= ROUNDS || over.iter().all(|&over| over <= 1.0) {
             return draft.finish(pieces, &used, over.iter().copied().fold(1.0, f64::max));
         }
@@ -110,7 +118,7 @@ impl Draft {
     }
 
     /// By what factor each place asks for more than it bears; 1 where it does not.
-    fn over(&self, limits: &Limits) -> Vec<f64> {
+    fn over(&self, limits: &Limits, lengths: &[f64]) -> Vec<f64> {
         let accelerations = self.accelerations();
         let mut over: Vec<f64> = accelerations
             .iter()
@@ -123,7 +131,43 @@ impl Draft {
         if limits.jerk.iter().any(|jerk| jerk.is_finite()) {
             self.jerks(limits, &accelerations, &mut over);
         }
+        self.steps(limits, lengths, &mut over);
         over
+    }
+
+    /// What a law asks for in the middle of its step.
+    fn steps(&self, limits: &Limits, lengths: &[f64], over: &mut [f64]) {
+        for (k, pair) in self.course.places.windows(2).enumerate() {
+            let [before, after] = pair else { continue };
+            if after.step == 0.0 {
+                continue;
+            }
+            let (from, to) = (&self.states[k], &self.states[k + 1]);
+            let way = (after.fraction - before.fraction) * lengths.get(after.piece).copied().unwrap_or(0.0);
+            let asked = match Law::between(law::contact(before, from, 1), law::contact(after, to, 0), way) {
+                Some(law) => {
+                    let [feed, slope, behind] = law.at(0.5 * law.duration);
+                    let part = behind / way;
+                    let mean = |a: f64, b: f64| a + (b - a) * part;
+                    let stretch = mean(before.stretch, after.stretch);
+                    let speed = feed * stretch;
+                    let along = slope * stretch + mean(before.stretching, after.stretching) * feed * feed;
+                    let direction = before.direction + (after.direction - before.direction) * part;
+                    let bend = mean(before.curvature, after.curvature) * speed * speed;
+                    let a = direction * along + direction.left() * bend;
+                    let cap = self.caps[k].speed.max(self.caps[k + 1].speed);
+                    let fast = (speed / cap / (1.0 + MIDDLE_SPEED)).powi(2);
+                    let [ax, ay] = limits.acceleration;
+                    let steep = (a.re.abs() / ax).max(a.im.abs() / ay) / (1.0 + MIDDLE_ACCELERATION);
+                    fast.max(steep)
+                }
+                None => WITHOUT_LAW,
+            };
+            if asked > 1.0 {
+                over[k] = over[k].max(asked);
+                over[k + 1] = over[k + 1].max(asked);
+            }
+        }
     }
 
     /// The accelerations of both axes in front of and behind each place.
