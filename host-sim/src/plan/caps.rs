@@ -59,6 +59,9 @@ pub(super) fn caps(course: &Course, limits: &Limits, scale: &[f64]) -> Vec<Cap> 
         if after.step == 0.0 {
             corner(&mut cap, before, after, limits, near(places, k));
         }
+        if after.is_rest {
+            cap.lower(0.0, Reason::Rest);
+        }
         let jump = after.direction.left() * (after.curvature - before.curvature);
         for (axis, jump) in [jump.re.abs(), jump.im.abs()].into_iter().enumerate() {
             // v^2 |n d(kappa)| within the window, or within the time that the step takes.

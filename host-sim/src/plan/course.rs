@@ -4,6 +4,7 @@ use shared::complex::Complex;
 use shared::curve::{Curve as _, Segment};
 
 use crate::contour::SMOOTH;
+use super::planner::{Manner, Rests};
 use crate::path::{Path, PathPiece};
 
 /// One place on the way.
@@ -29,6 +30,8 @@ pub struct Place {
     pub feed: f64,
     /// Whether the way turns between the place before and this one: both stand on one corner.
     pub is_corner: bool,
+    /// Whether the motion rests between the place before and this one.
+    pub is_rest: bool,
 }
 
 /// All places, in order.
@@ -55,10 +58,21 @@ impl Course {
     pub fn through(
         pieces: &[PathPiece],
         weight: f64,
-        ends: [Option<f64>; 2],
+        manner: &Manner,
         parts: impl FnMut(usize, &PathPiece) -> Vec<f64>,
     ) -> Self {
-        Self { places: places(pieces, weight, parts), ends }
+        let mut places = places(pieces, weight, parts);
+        for k in 1..places.len() {
+            let (before, after) = (places[k - 1].piece, places[k].piece);
+            let is_node = before != after && pieces[before].segment != pieces[after].segment;
+            let place = &mut places[k];
+            place.is_rest = match manner.rests {
+                Rests::Never => false,
+                Rests::InCorners => place.is_corner,
+                Rests::AtNodes => is_node,
+            };
+        }
+        Self { places, ends: manner.ends }
     }
 
     /// Its length in mm.
@@ -128,6 +142,7 @@ fn place(piece: &PathPiece, weight: f64, xi: f64) -> Place {
         // Equation (20): V_d = V ((1 - w) |1 + kappa d| + w).
         feed: piece.feed * ((1.0 - weight) * stretch + weight),
         is_corner: false,
+        is_rest: false,
     }
 }
 

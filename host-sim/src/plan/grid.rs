@@ -8,10 +8,14 @@ use shared::curve::Segment;
 use super::caps::{Cap, alone, caps};
 use super::course::{Course, Place};
 use super::limits::Limits;
+use super::planner::Manner;
 use crate::path::PathPiece;
 
 /// The time that a step takes at most, in s.
 const TIME: f64 = 4e-3;
+
+/// The time that a step takes at least, in s: a quarter of a tick, in which nobody could see more of it.
+const SHORTEST: f64 = 0.25 * shared::TICK as f64;
 
 /// The part of a speed that a peak may sag by between two places.
 const SAG: f64 = 1e-3;
@@ -32,8 +36,8 @@ const TURN: f64 = 0.08;
 const LOOKS: u32 = 16;
 
 /// The places for a plan within limits.
-pub(super) fn places(pieces: &[PathPiece], weight: f64, limits: &Limits, ends: [Option<f64>; 2]) -> Course {
-    let coarse = Course::through(pieces, weight, ends, |_, piece| match piece.segment {
+pub(super) fn places(pieces: &[PathPiece], weight: f64, limits: &Limits, manner: &Manner) -> Course {
+    let coarse = Course::through(pieces, weight, manner, |_, piece| match piece.segment {
         Segment::Line(_) => vec![0.0, 1.0],
         _ => (0..=LOOKS).map(|k| f64::from(k) / f64::from(LOOKS)).collect(),
     });
@@ -43,7 +47,7 @@ pub(super) fn places(pieces: &[PathPiece], weight: f64, limits: &Limits, ends: [
     let wanted: Vec<f64> =
         coarse.places.iter().zip(&caps).map(|(place, cap)| step(place, cap, jx.min(jy), least)).collect();
     let mut start = 0;
-    Course::through(pieces, weight, ends, |number, piece| {
+    Course::through(pieces, weight, manner, |number, piece| {
         let end = start + coarse.places[start..].iter().take_while(|place| place.piece == number).count();
         // Away from its ends: a line is the same all along.
         let within = coarse.places[start..end].iter().map(|place| step(place, &alone(place, limits, 1.0), jx.min(jy), least));
@@ -64,9 +68,10 @@ fn first_step(limits: &Limits) -> f64 {
 
 fn step(place: &Place, cap: &Cap, jerk: f64, least: f64) -> f64 {
     // Between two places at constant jerk a speed is off its chord by J t^2/8.
-    let time = (8.0 * SAG * cap.speed / jerk).sqrt().clamp(0.25 * TIME, TIME);
+    let time =
+        if jerk.is_finite() { (8.0 * SAG * cap.speed / jerk).sqrt().clamp(0.25 * TIME, TIME) } else { TIME };
     let even = STRETCHING * place.stretch * place.stretch / place.stretching.abs();
-    (cap.speed * time + least).min(even).min(TURN / place.curvature.abs())
+    (cap.speed * time + least).min(even).min(TURN / place.curvature.abs()).max(cap.speed * SHORTEST)
 }
 
 /// The parts of a piece whose steps are what is wanted at the places looked at, and between these at most as much as growth allows.

@@ -26,4 +26,4 @@ pub use bound::{Bound, bound};
 pub use course::Course;
 pub use demand::{Demand, Recorder};
 pub use limits::Limits;
-pub use planner::{Plan, plan, planned};
+pub use planner::{Manner, Plan, PlanError, Rests, plan, planned};

@@ -48,12 +48,53 @@ pub struct Plan {
 /// The part of an axis' acceleration and jerk that a hold adds to what the plan asks for, since the plan may ask for all of it.
 const HOLD: f64 = 0.25;
 
-/// A path as it is planned: its pieces have profiles, and begin and end at the speeds `ends`, none where that is free.
+/// How a path goes on from piece to piece, and how it begins and ends.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Manner {
+    /// Where it rests on the way.
+    pub rests: Rests,
+    /// The speeds of the centre at which it begins and ends, in mm/s; none where that is free.
+    pub ends: [Option<f64>; 2],
+}
+
+impl Manner {
+    /// From rest to rest, and through all corners at what they bear.
+    pub const USUAL: Self = Self { rests: Rests::Never, ends: [Some(0.0); 2] };
+}
+
+/// Where a path rests on the way, as RS-274 has it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Rests {
+    /// Nowhere: G64.
+    #[default]
+    Never,
+    /// In every corner: G61.
+    InCorners,
+    /// Wherever one segment or fill ends and another begins: G61.1.
+    AtNodes,
+}
+
+/// Why a path cannot be planned.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum PlanError {
+    /// It cannot begin at the speed that is asked for.
+    Start {
+        /// The largest possible one, in mm/s.
+        most: f64,
+    },
+    /// It cannot end at the speed that is asked for.
+    End {
+        /// The largest possible one, in mm/s.
+        most: f64,
+    },
+}
+
+/// A path as it is planned: its pieces have profiles.
 ///
 /// An override above 100 % would ask for more than the plan, so there is none. A hold takes a quarter of the accelerations and jerks
-/// on top of what the plan asks for where it happens.
-pub fn planned(path: &Path, limits: &Limits, ends: [Option<f64>; 2]) -> (Path, Plan) {
-    let plan = plan(&path.pieces, path.weight, limits, ends);
+/// on top of what the plan asks for where it happens. Errors: a speed at an end that the limits do not let be.
+pub fn planned(path: &Path, limits: &Limits, manner: &Manner) -> Result<(Path, Plan), PlanError> {
+    let plan = plan(&path.pieces, path.weight, limits, manner)?;
     let [x, y] = limits.velocity;
     let fastest = plan.speed.iter().copied().fold(0.0, f64::max).min(x.hypot(y));
     let part = |of: [f64; 2]| (HOLD * of[0].min(of[1]) / fastest).clamp(0.0, 1e6) as f32;
@@ -64,24 +105,41 @@ pub fn planned(path: &Path, limits: &Limits, ends: [Option<f64>; 2]) -> (Path, P
         most: 1.0,
     };
     let header = Header { rest: false, pace, ..path.header };
-    (Path { pieces: plan.pieces.clone(), header, ..path.clone() }, plan)
+    Ok((Path { pieces: plan.pieces.clone(), header, ..path.clone() }, plan))
 }
 
-/// Plans pieces within limits. `ends` are the speeds at which the path begins and ends, none where that is free.
-pub fn plan(pieces: &[PathPiece], weight: f64, limits: &Limits, ends: [Option<f64>; 2]) -> Plan {
+/// Plans pieces within limits. Errors: as [`planned`].
+pub fn plan(pieces: &[PathPiece], weight: f64, limits: &Limits, manner: &Manner) -> Result<Plan, PlanError> {
     let used = limits.with_margin(USED);
-    let course = grid::places(pieces, weight, &used, ends);
-    let mut scale = vec![1.0; course.places.len()];
+    let course = grid::places(pieces, weight, &used, manner);
     let lengths: Vec<f64> = pieces.iter().map(PathPiece::segment_length).collect();
+    let mut scale = vec![1.0; course.places.len()];
     let mut round = 0;
     loop {
-        let draft = Draft::new(pieces, course.clone(), &used, &scale);
+        let draft = Draft::new(course.clone(), &used, &scale);
         round += 1;
         let over = draft.over(&used, &lengths);
         if round >= ROUNDS || over.iter().all(|&over| over <= 1.0) {
-            return draft.finish(pieces, &used, over.iter().copied().fold(1.0, f64::max));
+            let plan = draft.finish(pieces, &used, over.iter().copied().fold(1.0, f64::max));
+            return check_ends(plan, manner.ends);
         }
-        lessen(&mut scale, &over, &draft.course);
+        lessen(&mut scale, &over);
+    }
+}
+
+fn check_ends(plan: Plan, ends: [Option<f64>; 2]) -> Result<Plan, PlanError> {
+    /// The part of an end's speed that may be missing.
+    const MISSING: f64 = 2e-3;
+    let short = |asked: Option<f64>, most: Option<&f64>| {
+        let (asked, most) = (asked?, *most?);
+        (most < asked * (1.0 - MISSING)).then_some(most)
+    };
+    if let Some(most) = short(ends[0], plan.speed.first()) {
+        return Err(PlanError::Start { most });
+    }
+    match short(ends[1], plan.speed.last()) {
+        Some(most) => Err(PlanError::End { most }),
+        None => Ok(plan),
     }
 }
 
@@ -93,8 +151,7 @@ struct Draft {
 }
 
 impl Draft {
-    fn new(pieces: &[PathPiece], course: Course, limits: &Limits, scale: &[f64]) -> Self {
-        let _ = pieces;
+    fn new(course: Course, limits: &Limits, scale: &[f64]) -> Self {
         let caps = caps(&course, limits, scale);
         let allowed: Vec<Allowed> = course
             .places
@@ -297,10 +354,9 @@ fn along(course: &Course, speed: &[f64], limits: &Limits, scale: &[f64]) -> Vec<
 }
 
 /// Gives less to the places that ask for too much, and to their neighbours.
-fn lessen(scale: &mut [f64], over: &[f64], course: &Course) {
+fn lessen(scale: &mut [f64], over: &[f64]) {
     /// Places on each side that share it.
     const NEAR: usize = 6;
-    let _ = course;
     let mut next = scale.to_vec();
     for (k, &over) in over.iter().enumerate() {
         if over > 1.0 {

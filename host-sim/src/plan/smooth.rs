@@ -76,7 +76,7 @@ pub(super) fn smooth(course: &Course, allowed: &[Allowed], speed: &[f64], jerk: 
     for k in 1..count {
         let step = places[k].step;
         if step == 0.0 {
-            if places[k].is_corner {
+            if places[k].is_corner || places[k].is_rest {
                 a = 0.0;
             }
             lowered[k] = lowered[k].min(lowered[k - 1]);
@@ -97,7 +97,7 @@ pub(super) fn smooth(course: &Course, allowed: &[Allowed], speed: &[f64], jerk: 
     for k in (1..count).rev() {
         let step = places[k].step;
         if step == 0.0 {
-            if places[k].is_corner {
+            if places[k].is_corner || places[k].is_rest {
                 a = 0.0;
             }
             if lowered[k] < lowered[k - 1] {
@@ -130,7 +130,7 @@ fn round_peaks(course: &Course, speed: &[f64], known: &[Option<f64>], jerk: &[f6
     let mut states: Vec<State> = speed.iter().map(|&speed| State { speed, acceleration: [0.0; 2] }).collect();
     let mut from = 0;
     for k in 1..=places.len() {
-        if k == places.len() || places[k].is_corner {
+        if k == places.len() || (places[k].is_corner || places[k].is_rest) {
             hull(course, &mut states, known, jerk, from, k);
             from = k;
         }
