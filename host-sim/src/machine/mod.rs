@@ -6,7 +6,10 @@ pub mod transfer;
 
 use std::ops::Range;
 
-use shared::machine::{MachineError, MachineSettings, image};
+use heapless::{String, Vec};
+use serde::Deserialize;
+use shared::machine::{AxisSettings, HostLost, Input, MachineError, MachineSettings, NAME_SIZE, image};
+use shared::steps::MOST_AXES;
 use toml::de::{DeTable, DeValue};
 
 use crate::input::{InputError, Source};
@@ -19,24 +22,49 @@ pub fn read(name: &str) -> Result<MachineSettings, InputError> {
     from_source(&Source::read(name)?)
 }
 
+/// The same with what it says of the path, for a plan.
+pub fn read_for_plan(name: &str) -> Result<(MachineSettings, PathSettings), InputError> {
+    both(&Source::read(name)?)
+}
+
 /// Reads and checks a machine from a text that is at hand; `name` stands in errors.
 pub fn from_toml(name: &str, text: &str) -> Result<MachineSettings, InputError> {
     from_source(&Source { name: name.to_string(), text: text.to_string() })
 }
 
 /// The text of a machine's file.
-pub fn to_toml(settings: &MachineSettings) -> Result<String, toml::ser::Error> {
+pub fn to_toml(settings: &MachineSettings) -> Result<std::string::String, toml::ser::Error> {
     toml::to_string(settings)
 }
 
 /// The image that the controller keeps.
-pub fn to_image(settings: &MachineSettings) -> Result<Vec<u8>, image::ImageError> {
+pub fn to_image(settings: &MachineSettings) -> Result<std::vec::Vec<u8>, image::ImageError> {
     image::encode(settings).map(|image| image.to_vec())
 }
 
+/// A machine's file: what the controller keeps, and what only the planner on the host reads.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct File {
+    name: String<NAME_SIZE>,
+    #[serde(default)]
+    host_lost: HostLost,
+    estop: Input,
+    debounce: f64,
+    release: f64,
+    axis: Vec<AxisSettings, MOST_AXES>,
+    #[serde(default)]
+    path: PathSettings,
+}
+
 fn from_source(source: &Source) -> Result<MachineSettings, InputError> {
-    let settings: MachineSettings = toml::from_str(&source.text)
+    both(source).map(|(settings, _)| settings)
+}
+
+fn both(source: &Source) -> Result<(MachineSettings, PathSettings), InputError> {
+    let File { name, host_lost, estop, debounce, release, axis, path } = toml::from_str(&source.text)
         .map_err(|error| source.error(&error.span().unwrap_or(0..0), error.message().trim().replace('\n', "; ")))?;
+    let settings = MachineSettings { name, host_lost, estop, debounce, release, axes: axis };
     settings.check().map_err(|error| {
         let message = match error.axis().and_then(|axis| settings.axes.get(usize::from(axis))) {
             Some(axis) => format!("axis {}: {error}", axis.name.letter()),
@@ -44,7 +72,17 @@ fn from_source(source: &Source) -> Result<MachineSettings, InputError> {
         };
         source.error(&locate(&source.text, error), message)
     })?;
-    Ok(settings)
+    if let Some((key, value)) = path.fault() {
+        let span = DeTable::parse(&source.text)
+            .ok()
+            .and_then(|document| {
+                let (_, value) = document.get_ref().get("path")?.get_ref().as_table()?.get_key_value(key)?;
+                Some(value.span())
+            })
+            .unwrap_or(0..0);
+        return Err(source.error(&span, format_args!("path.{key} is {value}; it must be a number above zero")));
+    }
+    Ok((settings, path))
 }
 
 /// The place of the value at fault, or of the innermost table that should hold it.

@@ -15,3 +15,16 @@ pub struct PathSettings {
     /// The largest contour error that the machine may make.
     pub contour_error: Option<f64>,
 }
+
+impl PathSettings {
+    /// A value that is no limit: not a number above zero, or for a corner's step below it.
+    pub(super) fn fault(&self) -> Option<(&'static str, f64)> {
+        let above = [("feed", self.feed), ("centripetal", self.centripetal), ("contour_error", self.contour_error)];
+        let above = above
+            .into_iter()
+            .filter_map(|(key, value)| Some((key, value?)))
+            .find(|&(_, x)| !(x > 0.0 && x.is_finite()));
+        let steps = self.corner_step.into_iter().flatten().find(|&x| !(x >= 0.0 && x.is_finite()));
+        above.or(steps.map(|step| ("corner_step", step)))
+    }
+}

@@ -42,6 +42,10 @@ impl<'a> Slowness<'a> {
 }
 
 fn piece_time(piece: &PathPiece, weight: f64) -> f64 {
+    if let Some(profile) = piece.profile {
+        // The mean of a cubic is that of its Bernstein coefficients.
+        return piece.segment_length() / (piece.feed * 0.25 * profile.factors.iter().sum::<f64>());
+    }
     let [from, to] = piece.interval;
     let slowness = Slowness::new(piece, weight);
     let width = (to - from) / f64::from(PANELS);

@@ -3,8 +3,8 @@
 use shared::complex::Complex;
 use shared::curve::{Curve as _, Segment};
 
-use crate::contour::SMOOTH;
 use super::planner::{Manner, Rests};
+use crate::contour::SMOOTH;
 use crate::path::{Path, PathPiece};
 
 /// One place on the way.

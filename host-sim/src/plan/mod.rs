@@ -10,19 +10,22 @@
 //! | `grid` | how near to each other the places of a plan stand |
 //! | [`law`] | the profiles of pieces that make such speeds |
 //! | [`planner`] | all of that for a path |
+//! | [`budget`] | a plan that keeps a plant's contour error within a budget |
 //! | [`demand`] | what a simulated run asks of a machine |
 
 pub mod bound;
+pub mod budget;
 pub mod caps;
 pub mod course;
 pub mod demand;
+mod grid;
 pub mod law;
 pub mod limits;
 pub mod planner;
-mod grid;
 mod smooth;
 
 pub use bound::{Bound, bound};
+pub use budget::{BudgetError, Budgeted, Response, within_budget};
 pub use course::Course;
 pub use demand::{Demand, Recorder};
 pub use limits::Limits;

@@ -199,8 +199,9 @@ pub fn peaks(setpoints: &[Position], corners: &[usize], standard: &Standard) -> 
     let vector = |order, start, stride| [0, 1, 2].map(|axis| difference(setpoints, axis, order, start, stride));
     Peaks {
         axes: [0, 1, 2].map(axis),
-        feed: motion
-            .peak(1, 1, standard.feed, error, |start, stride| (norm(vector(1, start, stride)), noise(1, stride, error))),
+        feed: motion.peak(1, 1, standard.feed, error, |start, stride| {
+            (norm(vector(1, start, stride)), noise(1, stride, error))
+        }),
         centripetal: motion.peak(2, 1, standard.centripetal, error, |start, stride| {
             let (acceleration, off) = (vector(2, start, stride), noise(2, stride, error));
             let velocity = vector(1, start, 2 * stride);
