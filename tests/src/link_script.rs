@@ -16,6 +16,7 @@ use shared::link::{
 use shared::motion::MotionCommand;
 use shared::pace::PaceLimits;
 use shared::piece::{Header, Order, Piece, Shape};
+use shared::profile::Profile;
 use shared::safety::{Coordinates, End, Fault, Refused};
 
 use crate::strict_machine::StrictMachine;
@@ -50,6 +51,8 @@ pub fn commands() -> Vec<Command> {
     // The first piece says where z is, or no later one could move it.
     let rests = Some(Travel { from: [Fixed(0)], to: [Fixed(0)] });
     let ph = Piece { start: ramp, end: ramp, further: rests, ..piece(Shape::Ph { preimage: w, offset: 0.25 }) };
+    let profile = Some(Profile { factors: [0.0, 0.25, 1.0, 1.0] });
+    let timed = Piece { profile, ..piece(Shape::Ph { preimage: w, offset: -0.5 }) };
     let further = Some(Travel { from: [Fixed(0)], to: [Fixed(262_144)] });
     let motion = [
         MotionCommand::Hold,
@@ -70,6 +73,8 @@ pub fn commands() -> Vec<Command> {
         Command::Begin(HEADER, Coordinates::Machine),
         Command::Piece(ph),
         Command::Piece(piece(arc)),
+        Command::Piece(timed),
+        Command::Piece(Piece { profile, ..piece(arc) }),
         Command::Piece(Piece { further, ..line }),
         Command::Piece(Piece { last: Some([Fixed(262_144), Fixed(131_072), Fixed(0)]), ..line }),
         Command::Run,

@@ -56,8 +56,17 @@ pub fn job(kind: Kind, order: Order) -> (Header<f32>, Vec<Piece<f32>>) {
     };
     let ramp = Some(Ramp { length: 0.25, factor: 0.25 });
     let origin = round_point(Complex::new(30.0, 20.0));
-    let first =
-        Piece { origin, shape, interval: [0.0, 1.0], feed: 50.0, start: ramp, end: ramp, profile: None, further: None, last: None };
+    let first = Piece {
+        origin,
+        shape,
+        interval: [0.0, 1.0],
+        feed: 50.0,
+        start: ramp,
+        end: ramp,
+        profile: None,
+        further: None,
+        last: None,
+    };
     twice(header, first)
 }
 
@@ -180,7 +189,8 @@ fn chain(
     let mut pieces: Vec<Piece<f32>> = Vec::new();
     for (shape, further) in shapes {
         let interval = [0.0, 1.0];
-        let mut piece = Piece { origin: at, shape, interval, feed, start: None, end: None, profile: None, further, last: None };
+        let mut piece =
+            Piece { origin: at, shape, interval, feed, start: None, end: None, profile: None, further, last: None };
         let Some([start, _]) = ends(&header, &piece) else { return (header, Vec::new()) };
         for (origin, (at, start)) in piece.origin.iter_mut().zip(at.into_iter().zip(start)) {
             origin.0 += at.0 - start.0;
