@@ -221,12 +221,13 @@ impl<T: Real, const F: usize> ActivePiece<T, F> {
                 tau.add(step);
                 let (u, slope) = ph.fraction_and_slope(tau.value());
                 tau.add((fraction - u) / slope);
-                // Beyond the ends by rounding only.
-                if tau.value().abs() > T::HALF {
-                    *tau = Accumulator::new(tau.value().least(T::HALF).most(-T::HALF));
-                }
             }
             Curve::Line { .. } | Curve::Arc { .. } | Curve::Spline(_) => *tau = Accumulator::new(fraction),
+        }
+        // Beyond the ends by rounding only, and no number where the curve all but stands still.
+        let within = tau.value().abs() <= T::HALF;
+        if !within {
+            *tau = Accumulator::new(tau.value().least(T::HALF).most(-T::HALF));
         }
     }
 

@@ -73,8 +73,6 @@ pub fn commands() -> Vec<Command> {
         Command::Begin(HEADER, Coordinates::Machine),
         Command::Piece(ph),
         Command::Piece(piece(arc)),
-        Command::Piece(timed),
-        Command::Piece(Piece { profile, ..piece(arc) }),
         Command::Piece(Piece { further, ..line }),
         Command::Piece(Piece { last: Some([Fixed(262_144), Fixed(131_072), Fixed(0)]), ..line }),
         Command::Run,
@@ -84,6 +82,8 @@ pub fn commands() -> Vec<Command> {
         Command::Hello { version: VERSION, session: SESSION },
     ];
     commands.extend(motion.map(Action::Motion).into_iter().chain(actions).map(Command::Act));
+    // Behind the others, so that a script of before says what it said.
+    commands.extend([timed, Piece { profile, ..piece(arc) }].map(Command::Piece));
     commands
 }
 

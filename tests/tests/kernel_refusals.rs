@@ -418,7 +418,8 @@ proptest! {
         }
     }
 
-    /// Good pieces come to their end: 200 mm at 5 % of 100 mm/s would be 40 s.
+    /// Good pieces come to their end: 200 mm at 5 % of 100 mm/s would be 40 s, and the contact point's way on an arc, which is what a
+    /// profile counts, may be ten times as long.
     #[test]
     fn good_pieces_come_to_their_end(kind in 0..3_u8, numbers in usual_numbers(), law in laws(), order in 0..4_usize) {
         let mut numbers = numbers;
@@ -428,7 +429,7 @@ proptest! {
         }
         let (header, piece) = assemble(kind, &numbers, law, [0; 2]);
         if let Some(active) = load_alone(&header, piece) {
-            prop_assert!(bear(active, ORDERS[order], 40 * 1024)?);
+            prop_assert!(bear(active, ORDERS[order], 400 * 1024)?);
         }
     }
 }
