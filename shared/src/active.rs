@@ -212,22 +212,37 @@ impl<T: Real, const F: usize> ActivePiece<T, F> {
         }
     }
 
-    /// Moves `tau` on by `step`, and then to where the fraction is `fraction` + 1/2: by one Newton step, which squares what is left. Along
-    /// a profile.
+    /// Moves `tau` on by `step`, and then to where the fraction is `fraction` + 1/2, by Newton's method. Along a profile.
+    ///
+    /// Each step squares what is left. A piece of many ticks takes one; where the speed of the curve changes much within some ticks, up to
+    /// three. What the way is off in f32 on pieces of 10, 50 and 100 mm is 3, 22 and 46 nm at most, rounding of u for the most part,
+    /// and setpoints are no noisier than along ramps (test `the_way_is_the_integral_of_the_profile`). A single step would be 130 nm off on
+    /// 10 mm at 120 mm/s, and 5 um on 2 mm.
     #[inline(always)]
     pub fn seek(&self, tau: &mut Accumulator<T>, step: T, fraction: T) {
+        /// A correction whose square is nothing in f32, however the curve's speed changes.
+        const SMALL: f64 = 1e-4;
+        let before = *tau;
         match &self.curve {
             Curve::Ph(ph) => {
                 tau.add(step);
-                let (u, slope) = ph.fraction_and_slope(tau.value());
-                tau.add((fraction - u) / slope);
+                for _ in 0..3 {
+                    let (u, slope) = ph.fraction_and_slope(tau.value());
+                    let correction = (fraction - u) / slope;
+                    tau.add(correction);
+                    if correction.abs() < T::lit(SMALL) {
+                        break;
+                    }
+                }
             }
             Curve::Line { .. } | Curve::Arc { .. } | Curve::Spline(_) => *tau = Accumulator::new(fraction),
         }
-        // Beyond the ends by rounding only, and no number where the curve all but stands still.
-        let within = tau.value().abs() <= T::HALF;
-        if !within {
-            *tau = Accumulator::new(tau.value().least(T::HALF).most(-T::HALF));
+        // Backwards and beyond the end by rounding only, or by no number where the curve all but stands still.
+        let onward = tau.value() >= before.value();
+        if !onward {
+            *tau = before;
+        } else if tau.value() > T::HALF {
+            *tau = Accumulator::new(T::HALF);
         }
     }
 

@@ -176,7 +176,7 @@ impl Draft {
     pub fn duration(&self, weight: f64) -> f64 {
         let [from, to] = self.interval;
         if let Some(profile) = self.profile {
-            return self.length(from, to) / self.feed * 4.0 / profile.factors.iter().sum::<f64>();
+            return integral(&|xi| self.sigma(xi), from, to) / self.feed * 4.0 / profile.factors.iter().sum::<f64>();
         }
         self.time(from, to, weight)
     }
