@@ -239,7 +239,7 @@ impl Figures {
                 ));
             }
         }
-        for kind in ["ph 1", "line 1", "arc 1", "spline 1"] {
+        for kind in ["ph 1", "line 1", "arc 1", "spline 1", "ph profile", "line profile"] {
             let most = self.instructions.get(kind).and_then(|row| row.get("most")).copied().unwrap_or(u32::MAX);
             if most > INTERRUPT_BAR {
                 faults.push(format!("the interrupt takes {most} instructions on {kind}; {INTERRUPT_BAR} are allowed"));
