@@ -34,6 +34,8 @@ const SHORTEST_MM: f64 = 4e-6;
 pub struct ActivePiece<T, const F: usize = 1> {
     curve: Curve<T>,
     law: Law<T>,
+    /// The knots of F as parameters tau: both ends where there are no ramps.
+    knots: [T; 2],
     origin: [Fixed; 2],
     /// Into how many equal parts order "exact" divides a tick on this piece, and the inverse of that number.
     substeps: u8,
@@ -55,11 +57,7 @@ pub struct ActivePiece<T, const F: usize = 1> {
 /// F of equation (21): of the arc length, or of time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Law<T> {
-    Ramps {
-        law: FeedLaw<T>,
-        /// The knots of F as parameters tau.
-        knots: [T; 2],
-    },
+    Ramps(FeedLaw<T>),
     Profile(ActiveProfile<T>),
 }
 
@@ -121,7 +119,8 @@ impl<T: Real, const F: usize> ActivePiece<T, F> {
         };
         let mut active = Self {
             curve,
-            law: Law::Ramps { law, knots: [-T::HALF, T::HALF] },
+            law: Law::Ramps(law),
+            knots: [-T::HALF, T::HALF],
             origin: piece.origin,
             substeps: 1,
             substep: T::ONE,
@@ -141,14 +140,12 @@ impl<T: Real, const F: usize> ActivePiece<T, F> {
                 return Err(PathError::Profile { factors: profile.factors.map(T::to_f32) });
             }
             Some(profile) => Law::Profile(ActiveProfile::activate(&profile, active.mean_rate())?),
-            None => Law::Ramps { law, knots: law.knots().map(|u| active.tau_at(u)) },
+            None => Law::Ramps(law),
         };
+        active.knots = law.knots().map(|u| active.tau_at(u));
         active.substeps = choose_substeps(fastest * tick, law.shortest_ramp());
         active.substep = T::ONE / T::from_int(i32::from(active.substeps));
         active.start_rate = active.rate(-T::HALF);
-        if let Some(profile) = active.profile() {
-            active.start_rate = active.start_rate * profile.factor(-T::HALF);
-        }
         active.least_slowness = T::ONE / fastest;
         active.until = PathTime::after(duration::of(&active));
         Ok(active)
@@ -195,12 +192,13 @@ impl<T: Real, const F: usize> ActivePiece<T, F> {
     /// F of equation (21). The arc length is evaluated within a ramp only.
     #[inline(always)]
     pub fn factor<N: Number<T>>(&self, tau: N) -> N {
-        match &self.law {
-            Law::Ramps { law, knots: [first, second] } if tau.value() < *first || tau.value() > *second => {
-                law.factor(self.fraction(tau))
+        let [first, second] = self.knots;
+        if tau.value() < first || tau.value() > second {
+            if let Law::Ramps(law) = &self.law {
+                return law.factor(self.fraction(tau));
             }
-            _ => N::constant(T::ONE),
         }
+        N::constant(T::ONE)
     }
 
     /// The feed over time, where the piece has one.
@@ -208,7 +206,7 @@ impl<T: Real, const F: usize> ActivePiece<T, F> {
     pub fn profile(&self) -> Option<&ActiveProfile<T>> {
         match &self.law {
             Law::Profile(profile) => Some(profile),
-            Law::Ramps { .. } => None,
+            Law::Ramps(_) => None,
         }
     }
 
@@ -279,13 +277,10 @@ impl<T: Real, const F: usize> ActivePiece<T, F> {
 
     /// The parameters tau between which the rate is one smooth function.
     pub fn knots(&self) -> [T; 2] {
-        match &self.law {
-            Law::Ramps { knots, .. } => *knots,
-            Law::Profile(_) => [-T::HALF, T::HALF],
-        }
+        self.knots
     }
 
-    /// The rate of (21) at the start of the piece, in 1/s.
+    /// The rate of (21) at the start of the piece, in 1/s; along a profile that of F = 1.
     #[inline(always)]
     pub fn start_rate(&self) -> T {
         self.start_rate

@@ -69,6 +69,7 @@ pub struct Executor<T, const F: usize = 1> {
     tau: Accumulator<T>,
     /// The time on a piece with a profile, -1/2..=1/2.
     theta: Accumulator<T>,
+    /// The rate of (21) at tau, along a profile that of F = 1.
     rate: T,
     point: Complex<T>,
     setpoint: Setpoint<F>,
@@ -227,7 +228,8 @@ impl<T: Real, const F: usize> Executor<T, F> {
     fn is_ample(&self, pieces: &impl Pieces<T, F>) -> bool {
         let Some(horizon) = pieces.horizon() else { return true };
         let Some(piece) = &self.active else { return false };
-        self.least_time(piece) + horizon.since(piece.until()) >= self.wanted.ample()
+        // Along a profile too: F is no more than 1.
+        self.tau.left_to(T::HALF) * piece.least_slowness() + horizon.since(piece.until()) >= self.wanted.ample()
     }
 
     /// A bound from below of the path time that is left on the piece, in s.
@@ -298,9 +300,6 @@ impl<T: Real, const F: usize> Executor<T, F> {
         let tau = self.tau.value();
         let (point, rate) = piece.point_and_rate(tau);
         (self.point, self.rate) = (point, rate);
-        if let Some(profile) = piece.profile() {
-            self.rate = rate * profile.factor(self.theta.value());
-        }
         self.setpoint.plane = piece.place(point);
         if let Some(further) = piece.further(tau) {
             self.setpoint.further = further;
@@ -468,12 +467,18 @@ impl<T: Real, const F: usize> Executor<T, F> {
         let piece = self.entered.checked_sub(1)?;
         let tau = self.tau.value();
         let parameter = self.active.map_or(tau, |piece| piece.parameter(tau));
-        Some(Place { piece, tau, parameter, rate: self.rate, point: self.point })
+        Some(Place { piece, tau, parameter, rate: self.rate_of_feed(), point: self.point })
+    }
+
+    /// The rate of (21) where the last tick ended, in 1/s. Not for the tick.
+    fn rate_of_feed(&self) -> T {
+        let profile = self.active.as_ref().and_then(ActivePiece::profile);
+        profile.map_or(self.rate, |profile| self.rate * profile.factor(self.theta.value()))
     }
 
     /// The centre feed V_d at which the last tick ended, in mm/s. Not for the tick.
     pub fn centre_feed(&self) -> T {
-        self.active.map_or(T::ZERO, |piece| piece.centre_speed(self.tau.value()) * self.rate * self.pace())
+        self.active.map_or(T::ZERO, |piece| piece.centre_speed(self.tau.value()) * self.rate_of_feed() * self.pace())
     }
 
     /// The arc-length fraction u on the piece at which the last tick ended.

@@ -4,9 +4,11 @@ use crate::accumulator::Accumulator;
 use crate::active::ActivePiece;
 use crate::jet::Jet;
 use crate::piece::Order;
+use crate::profile::ActiveProfile;
 use crate::real::Real;
 
-/// Moves `tau` along `piece` for `time` seconds, and `theta` where the piece has a profile. `rate` is the rate of (21) at `tau`.
+/// Moves `tau` along `piece` for `time` seconds, and `theta` where the piece has a profile. `rate` is the rate of (21) at `tau`, along a profile
+/// that of F = 1.
 ///
 /// Returns the time that is left when the end of the piece comes first; `tau` then says nothing any more. The step is the
 /// same function of time whether or not the piece ends within it, so that a node changes nothing but the curve.
@@ -20,12 +22,7 @@ pub fn advance<T: Real, const F: usize>(
     time: T,
 ) -> Option<T> {
     if let Some(profile) = piece.profile() {
-        let left = profile.advance(theta, time);
-        if left.is_none() {
-            // The step of (22), and to where the time says.
-            piece.seek(tau, rate * time, profile.fraction(theta.value()));
-        }
-        return left;
+        return timed(piece, profile, tau, theta, rate, time);
     }
     match order {
         Order::First => first(tau, rate, time),
@@ -33,6 +30,25 @@ pub fn advance<T: Real, const F: usize>(
         Order::Third => taylor(piece, tau, time, true),
         Order::Exact => exact(piece, tau, time),
     }
+}
+
+/// Along a profile: the step of equation (22) with the mean of F, and to where the time says.
+#[inline(never)]
+fn timed<T: Real, const F: usize>(
+    piece: &ActivePiece<T, F>,
+    profile: &ActiveProfile<T>,
+    tau: &mut Accumulator<T>,
+    theta: &mut Accumulator<T>,
+    rate: T,
+    time: T,
+) -> Option<T> {
+    let before = profile.fraction(theta.value());
+    let left = profile.advance(theta, time);
+    if left.is_none() {
+        let fraction = profile.fraction(theta.value());
+        piece.seek(tau, rate * profile.way(fraction - before), fraction);
+    }
+    left
 }
 
 /// The first-order step of equation (22). A division only where the piece ends.
