@@ -15,7 +15,7 @@ use crate::feed::FeedLaw;
 use crate::fixed::{Fixed, REACH_MM};
 use crate::further::{Linear, Travel};
 use crate::jet::Number;
-use crate::piece::{Piece, Shape};
+use crate::piece::{Order, Piece, Shape};
 use crate::profile::ActiveProfile;
 use crate::real::Real;
 use crate::supply::PathTime;
@@ -33,9 +33,11 @@ const SHORTEST_MM: f64 = 4e-6;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ActivePiece<T, const F: usize = 1> {
     curve: Curve<T>,
-    law: Law<T>,
-    /// The knots of F as parameters tau: both ends where there are no ramps.
+    law: FeedLaw<T>,
+    /// The knots of F as parameters tau.
     knots: [T; 2],
+    /// F over time, in the place of the law, which has no ramps then. Beside it, because a choice between them costs every tick.
+    profile: Option<ActiveProfile<T>>,
     origin: [Fixed; 2],
     /// Into how many equal parts order "exact" divides a tick on this piece, and the inverse of that number.
     substeps: u8,
@@ -52,13 +54,6 @@ pub struct ActivePiece<T, const F: usize = 1> {
     /// Where the path ends, if it does here.
     last: [Fixed; 2],
     is_last: bool,
-}
-
-/// F of equation (21): of the arc length, or of time.
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Law<T> {
-    Ramps(FeedLaw<T>),
-    Profile(ActiveProfile<T>),
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -119,8 +114,9 @@ impl<T: Real, const F: usize> ActivePiece<T, F> {
         };
         let mut active = Self {
             curve,
-            law: Law::Ramps(law),
+            law,
             knots: [-T::HALF, T::HALF],
+            profile: None,
             origin: piece.origin,
             substeps: 1,
             substep: T::ONE,
@@ -135,12 +131,12 @@ impl<T: Real, const F: usize> ActivePiece<T, F> {
         };
         active.check_points()?;
         let fastest = active.fastest();
-        active.law = match piece.profile {
+        active.profile = match piece.profile {
             Some(profile) if piece.start.is_some() || piece.end.is_some() => {
                 return Err(PathError::Profile { factors: profile.factors.map(T::to_f32) });
             }
-            Some(profile) => Law::Profile(ActiveProfile::activate(&profile, active.mean_rate())?),
-            None => Law::Ramps(law),
+            Some(profile) => Some(ActiveProfile::activate(&profile, active.mean_rate())?),
+            None => None,
         };
         active.knots = law.knots().map(|u| active.tau_at(u));
         active.substeps = choose_substeps(fastest * tick, law.shortest_ramp());
@@ -194,9 +190,7 @@ impl<T: Real, const F: usize> ActivePiece<T, F> {
     pub fn factor<N: Number<T>>(&self, tau: N) -> N {
         let [first, second] = self.knots;
         if tau.value() < first || tau.value() > second {
-            if let Law::Ramps(law) = &self.law {
-                return law.factor(self.fraction(tau));
-            }
+            return self.law.factor(self.fraction(tau));
         }
         N::constant(T::ONE)
     }
@@ -204,10 +198,13 @@ impl<T: Real, const F: usize> ActivePiece<T, F> {
     /// The feed over time, where the piece has one.
     #[inline(always)]
     pub fn profile(&self) -> Option<&ActiveProfile<T>> {
-        match &self.law {
-            Law::Profile(profile) => Some(profile),
-            Law::Ramps(_) => None,
-        }
+        self.profile.as_ref()
+    }
+
+    /// How (21) is integrated here on a path of this order: not at all along a profile.
+    #[inline(always)]
+    pub fn order(&self, order: Order) -> Option<Order> {
+        self.profile.is_none().then_some(order)
     }
 
     /// Moves `tau` on by `step`, and then to where the fraction is `fraction` + 1/2, by Newton's method. Along a profile.
@@ -220,28 +217,24 @@ impl<T: Real, const F: usize> ActivePiece<T, F> {
     pub fn seek(&self, tau: &mut Accumulator<T>, step: T, fraction: T) {
         /// A correction whose square is nothing in f32, however the curve's speed changes.
         const SMALL: f64 = 1e-4;
-        let before = *tau;
-        match &self.curve {
+        let before = tau.value();
+        let at = match &self.curve {
             Curve::Ph(ph) => {
-                tau.add(step);
+                let mut at = before + step;
                 for _ in 0..3 {
-                    let (u, slope) = ph.fraction_and_slope(tau.value());
+                    let (u, slope) = ph.fraction_and_slope(at);
                     let correction = (fraction - u) / slope;
-                    tau.add(correction);
+                    at += correction;
                     if correction.abs() < T::lit(SMALL) {
                         break;
                     }
                 }
+                at
             }
-            Curve::Line { .. } | Curve::Arc { .. } | Curve::Spline(_) => *tau = Accumulator::new(fraction),
-        }
+            Curve::Line { .. } | Curve::Arc { .. } | Curve::Spline(_) => fraction,
+        };
         // Backwards and beyond the end by rounding only, or by no number where the curve all but stands still.
-        let onward = tau.value() >= before.value();
-        if !onward {
-            *tau = before;
-        } else if tau.value() > T::HALF {
-            *tau = Accumulator::new(T::HALF);
-        }
+        *tau = Accumulator::new(at.most(before).least(T::HALF));
     }
 
     /// The arc-length fraction u of equations (6) and (9), on C.

@@ -51,6 +51,8 @@ pub struct Place<T> {
 pub struct Executor<T, const F: usize = 1> {
     tick: T,
     order: Order,
+    /// The same on the piece; none along a profile.
+    piece_order: Option<Order>,
     state: State,
     pacer: Pacer<T>,
     pace: Pace,
@@ -107,6 +109,7 @@ impl<T: Real, const F: usize> Executor<T, F> {
         Self {
             tick,
             order: Order::First,
+            piece_order: None,
             state: State::Idle,
             pacer,
             pace: pacer.unity(),
@@ -208,7 +211,7 @@ impl<T: Real, const F: usize> Executor<T, F> {
             (time, entered) = changed;
         }
         let left = match &self.active {
-            Some(piece) => advance(piece, &mut self.tau, &mut self.theta, self.rate, self.order, time),
+            Some(piece) => advance(piece, &mut self.tau, &mut self.theta, self.rate, self.piece_order, time),
             None => Some(time),
         };
         if let Some(left) = left
@@ -333,6 +336,7 @@ impl<T: Real, const F: usize> Executor<T, F> {
         self.tau = Accumulator::new(-T::HALF);
         self.theta = self.tau;
         self.rate = piece.start_rate();
+        self.piece_order = piece.order(self.order);
         self.entered = self.entered.wrapping_add(1);
         self.at_node = false;
         if self.state == State::Starved {
@@ -367,7 +371,7 @@ impl<T: Real, const F: usize> Executor<T, F> {
             }
             self.stand_at_start();
             let Some(piece) = &self.active else { return false };
-            match advance(piece, &mut self.tau, &mut self.theta, self.rate, self.order, left) {
+            match advance(piece, &mut self.tau, &mut self.theta, self.rate, self.piece_order, left) {
                 None => return true,
                 Some(rest) => left = rest,
             }

@@ -4,11 +4,10 @@ use crate::accumulator::Accumulator;
 use crate::active::ActivePiece;
 use crate::jet::Jet;
 use crate::piece::Order;
-use crate::profile::ActiveProfile;
 use crate::real::Real;
 
 /// Moves `tau` along `piece` for `time` seconds, and `theta` where the piece has a profile. `rate` is the rate of (21) at `tau`, along a profile
-/// that of F = 1.
+/// that of F = 1, and `order` is what [`ActivePiece::order`] makes of that of the path.
 ///
 /// Returns the time that is left when the end of the piece comes first; `tau` then says nothing any more. The step is the
 /// same function of time whether or not the piece ends within it, so that a node changes nothing but the curve.
@@ -18,17 +17,15 @@ pub fn advance<T: Real, const F: usize>(
     tau: &mut Accumulator<T>,
     theta: &mut Accumulator<T>,
     rate: T,
-    order: Order,
+    order: Option<Order>,
     time: T,
 ) -> Option<T> {
-    if let Some(profile) = piece.profile() {
-        return timed(piece, profile, tau, theta, rate, time);
-    }
     match order {
-        Order::First => first(tau, rate, time),
-        Order::Second => taylor(piece, tau, time, false),
-        Order::Third => taylor(piece, tau, time, true),
-        Order::Exact => exact(piece, tau, time),
+        Some(Order::First) => first(tau, rate, time),
+        Some(Order::Second) => taylor(piece, tau, time, false),
+        Some(Order::Third) => taylor(piece, tau, time, true),
+        Some(Order::Exact) => exact(piece, tau, time),
+        None => timed(piece, tau, theta, rate, time),
     }
 }
 
@@ -36,12 +33,12 @@ pub fn advance<T: Real, const F: usize>(
 #[inline(never)]
 fn timed<T: Real, const F: usize>(
     piece: &ActivePiece<T, F>,
-    profile: &ActiveProfile<T>,
     tau: &mut Accumulator<T>,
     theta: &mut Accumulator<T>,
     rate: T,
     time: T,
 ) -> Option<T> {
+    let profile = piece.profile()?;
     let before = profile.fraction(theta.value());
     let left = profile.advance(theta, time);
     if left.is_none() {
