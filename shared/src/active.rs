@@ -33,11 +33,9 @@ const SHORTEST_MM: f64 = 4e-6;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ActivePiece<T, const F: usize = 1> {
     curve: Curve<T>,
-    law: FeedLaw<T>,
-    /// The knots of F as parameters tau.
+    law: Law<T>,
+    /// The knots of F as parameters tau: both ends where there are no ramps.
     knots: [T; 2],
-    /// F over time, in the place of the law, which has no ramps then. Beside it, because a choice between them costs every tick.
-    profile: Option<ActiveProfile<T>>,
     origin: [Fixed; 2],
     /// Into how many equal parts order "exact" divides a tick on this piece, and the inverse of that number.
     substeps: u8,
@@ -54,6 +52,13 @@ pub struct ActivePiece<T, const F: usize = 1> {
     /// Where the path ends, if it does here.
     last: [Fixed; 2],
     is_last: bool,
+}
+
+/// F of equation (21): of the arc length, or of time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Law<T> {
+    Ramps(FeedLaw<T>),
+    Profile(ActiveProfile<T>),
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -114,9 +119,8 @@ impl<T: Real, const F: usize> ActivePiece<T, F> {
         };
         let mut active = Self {
             curve,
-            law,
+            law: Law::Ramps(law),
             knots: [-T::HALF, T::HALF],
-            profile: None,
             origin: piece.origin,
             substeps: 1,
             substep: T::ONE,
@@ -131,12 +135,12 @@ impl<T: Real, const F: usize> ActivePiece<T, F> {
         };
         active.check_points()?;
         let fastest = active.fastest();
-        active.profile = match piece.profile {
+        active.law = match piece.profile {
             Some(profile) if piece.start.is_some() || piece.end.is_some() => {
                 return Err(PathError::Profile { factors: profile.factors.map(T::to_f32) });
             }
-            Some(profile) => Some(ActiveProfile::activate(&profile, active.mean_rate())?),
-            None => None,
+            Some(profile) => Law::Profile(ActiveProfile::activate(&profile, active.mean_rate())?),
+            None => Law::Ramps(law),
         };
         active.knots = law.knots().map(|u| active.tau_at(u));
         active.substeps = choose_substeps(fastest * tick, law.shortest_ramp());
@@ -189,22 +193,25 @@ impl<T: Real, const F: usize> ActivePiece<T, F> {
     #[inline(always)]
     pub fn factor<N: Number<T>>(&self, tau: N) -> N {
         let [first, second] = self.knots;
-        if tau.value() < first || tau.value() > second {
-            return self.law.factor(self.fraction(tau));
+        match &self.law {
+            Law::Ramps(law) if tau.value() < first || tau.value() > second => law.factor(self.fraction(tau)),
+            _ => N::constant(T::ONE),
         }
-        N::constant(T::ONE)
     }
 
     /// The feed over time, where the piece has one.
     #[inline(always)]
     pub fn profile(&self) -> Option<&ActiveProfile<T>> {
-        self.profile.as_ref()
+        match &self.law {
+            Law::Profile(profile) => Some(profile),
+            Law::Ramps(_) => None,
+        }
     }
 
     /// How (21) is integrated here on a path of this order: not at all along a profile.
     #[inline(always)]
     pub fn order(&self, order: Order) -> Option<Order> {
-        self.profile.is_none().then_some(order)
+        self.profile().is_none().then_some(order)
     }
 
     /// Moves `tau` on by `step`, and then to where the fraction is `fraction` + 1/2, by Newton's method. Along a profile.
