@@ -15,7 +15,7 @@ use crate::feed::FeedLaw;
 use crate::fixed::{Fixed, REACH_MM};
 use crate::further::{Linear, Travel};
 use crate::jet::Number;
-use crate::piece::{Piece, Shape};
+use crate::piece::{Order, Piece, Shape};
 use crate::profile::ActiveProfile;
 use crate::real::Real;
 use crate::supply::PathTime;
@@ -34,6 +34,8 @@ const SHORTEST_MM: f64 = 4e-6;
 pub struct ActivePiece<T, const F: usize = 1> {
     curve: Curve<T>,
     law: Law<T>,
+    /// The knots of F as parameters tau: both ends where there are no ramps.
+    knots: [T; 2],
     origin: [Fixed; 2],
     /// Into how many equal parts order "exact" divides a tick on this piece, and the inverse of that number.
     substeps: u8,
@@ -55,11 +57,7 @@ pub struct ActivePiece<T, const F: usize = 1> {
 /// F of equation (21): of the arc length, or of time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Law<T> {
-    Ramps {
-        law: FeedLaw<T>,
-        /// The knots of F as parameters tau.
-        knots: [T; 2],
-    },
+    Ramps(FeedLaw<T>),
     Profile(ActiveProfile<T>),
 }
 
@@ -121,7 +119,8 @@ impl<T: Real, const F: usize> ActivePiece<T, F> {
         };
         let mut active = Self {
             curve,
-            law: Law::Ramps { law, knots: [-T::HALF, T::HALF] },
+            law: Law::Ramps(law),
+            knots: [-T::HALF, T::HALF],
             origin: piece.origin,
             substeps: 1,
             substep: T::ONE,
@@ -141,14 +140,12 @@ impl<T: Real, const F: usize> ActivePiece<T, F> {
                 return Err(PathError::Profile { factors: profile.factors.map(T::to_f32) });
             }
             Some(profile) => Law::Profile(ActiveProfile::activate(&profile, active.mean_rate())?),
-            None => Law::Ramps { law, knots: law.knots().map(|u| active.tau_at(u)) },
+            None => Law::Ramps(law),
         };
+        active.knots = law.knots().map(|u| active.tau_at(u));
         active.substeps = choose_substeps(fastest * tick, law.shortest_ramp());
         active.substep = T::ONE / T::from_int(i32::from(active.substeps));
         active.start_rate = active.rate(-T::HALF);
-        if let Some(profile) = active.profile() {
-            active.start_rate = active.start_rate * profile.factor(-T::HALF);
-        }
         active.least_slowness = T::ONE / fastest;
         active.until = PathTime::after(duration::of(&active));
         Ok(active)
@@ -195,10 +192,9 @@ impl<T: Real, const F: usize> ActivePiece<T, F> {
     /// F of equation (21). The arc length is evaluated within a ramp only.
     #[inline(always)]
     pub fn factor<N: Number<T>>(&self, tau: N) -> N {
+        let [first, second] = self.knots;
         match &self.law {
-            Law::Ramps { law, knots: [first, second] } if tau.value() < *first || tau.value() > *second => {
-                law.factor(self.fraction(tau))
-            }
+            Law::Ramps(law) if tau.value() < first || tau.value() > second => law.factor(self.fraction(tau)),
             _ => N::constant(T::ONE),
         }
     }
@@ -208,26 +204,45 @@ impl<T: Real, const F: usize> ActivePiece<T, F> {
     pub fn profile(&self) -> Option<&ActiveProfile<T>> {
         match &self.law {
             Law::Profile(profile) => Some(profile),
-            Law::Ramps { .. } => None,
+            Law::Ramps(_) => None,
         }
     }
 
-    /// Moves `tau` on by `step`, and then to where the fraction is `fraction` + 1/2: by one Newton step, which squares what is left. Along
-    /// a profile.
+    /// How (21) is integrated here on a path of this order: not at all along a profile.
+    #[inline(always)]
+    pub fn order(&self, order: Order) -> Option<Order> {
+        self.profile().is_none().then_some(order)
+    }
+
+    /// Moves `tau` on by `step`, and then to where the fraction is `fraction` + 1/2, by Newton's method. Along a profile.
+    ///
+    /// Each step squares what is left. A piece of many ticks takes one; where the speed of the curve changes much within some ticks, up to
+    /// three. What the way is off in f32 on pieces of 10, 50 and 100 mm is 3, 22 and 42 nm at most, rounding of u for the most part;
+    /// at an even feed second differences of setpoints have a noise of 4.1, 5.3 and 8.4 nm, and along ramps of 4.0, 4.8 and 7.2 nm
+    /// (test `the_way_is_the_integral_of_the_profile`). A single step would be 130 nm off on
+    /// 10 mm at 120 mm/s, and 5 um on 2 mm.
     #[inline(always)]
     pub fn seek(&self, tau: &mut Accumulator<T>, step: T, fraction: T) {
-        match &self.curve {
+        /// A correction whose square is nothing in f32, however the curve's speed changes.
+        const SMALL: f64 = 1e-4;
+        let before = tau.value();
+        let at = match &self.curve {
             Curve::Ph(ph) => {
-                tau.add(step);
-                let (u, slope) = ph.fraction_and_slope(tau.value());
-                tau.add((fraction - u) / slope);
-                // Beyond the ends by rounding only.
-                if tau.value().abs() > T::HALF {
-                    *tau = Accumulator::new(tau.value().least(T::HALF).most(-T::HALF));
+                let mut at = before + step;
+                for _ in 0..3 {
+                    let (u, slope) = ph.fraction_and_slope(at);
+                    let correction = (fraction - u) / slope;
+                    at += correction;
+                    if correction.abs() < T::lit(SMALL) {
+                        break;
+                    }
                 }
+                at
             }
-            Curve::Line { .. } | Curve::Arc { .. } | Curve::Spline(_) => *tau = Accumulator::new(fraction),
-        }
+            Curve::Line { .. } | Curve::Arc { .. } | Curve::Spline(_) => fraction,
+        };
+        // Backwards and beyond the end by rounding only, or by no number where the curve all but stands still.
+        *tau = Accumulator::new(at.most(before).least(T::HALF));
     }
 
     /// The arc-length fraction u of equations (6) and (9), on C.
@@ -263,13 +278,10 @@ impl<T: Real, const F: usize> ActivePiece<T, F> {
 
     /// The parameters tau between which the rate is one smooth function.
     pub fn knots(&self) -> [T; 2] {
-        match &self.law {
-            Law::Ramps { knots, .. } => *knots,
-            Law::Profile(_) => [-T::HALF, T::HALF],
-        }
+        self.knots
     }
 
-    /// The rate of (21) at the start of the piece, in 1/s.
+    /// The rate of (21) at the start of the piece, in 1/s; along a profile that of F = 1.
     #[inline(always)]
     pub fn start_rate(&self) -> T {
         self.start_rate

@@ -51,6 +51,8 @@ pub struct Place<T> {
 pub struct Executor<T, const F: usize = 1> {
     tick: T,
     order: Order,
+    /// The same on the piece; none along a profile.
+    piece_order: Option<Order>,
     state: State,
     pacer: Pacer<T>,
     pace: Pace,
@@ -69,6 +71,7 @@ pub struct Executor<T, const F: usize = 1> {
     tau: Accumulator<T>,
     /// The time on a piece with a profile, -1/2..=1/2.
     theta: Accumulator<T>,
+    /// The rate of (21) at tau, along a profile that of F = 1.
     rate: T,
     point: Complex<T>,
     setpoint: Setpoint<F>,
@@ -106,6 +109,7 @@ impl<T: Real, const F: usize> Executor<T, F> {
         Self {
             tick,
             order: Order::First,
+            piece_order: None,
             state: State::Idle,
             pacer,
             pace: pacer.unity(),
@@ -207,7 +211,7 @@ impl<T: Real, const F: usize> Executor<T, F> {
             (time, entered) = changed;
         }
         let left = match &self.active {
-            Some(piece) => advance(piece, &mut self.tau, &mut self.theta, self.rate, self.order, time),
+            Some(piece) => advance(piece, &mut self.tau, &mut self.theta, self.rate, self.piece_order, time),
             None => Some(time),
         };
         if let Some(left) = left
@@ -227,7 +231,8 @@ impl<T: Real, const F: usize> Executor<T, F> {
     fn is_ample(&self, pieces: &impl Pieces<T, F>) -> bool {
         let Some(horizon) = pieces.horizon() else { return true };
         let Some(piece) = &self.active else { return false };
-        self.least_time(piece) + horizon.since(piece.until()) >= self.wanted.ample()
+        // Along a profile too: F is no more than 1.
+        self.tau.left_to(T::HALF) * piece.least_slowness() + horizon.since(piece.until()) >= self.wanted.ample()
     }
 
     /// A bound from below of the path time that is left on the piece, in s.
@@ -298,9 +303,6 @@ impl<T: Real, const F: usize> Executor<T, F> {
         let tau = self.tau.value();
         let (point, rate) = piece.point_and_rate(tau);
         (self.point, self.rate) = (point, rate);
-        if let Some(profile) = piece.profile() {
-            self.rate = rate * profile.factor(self.theta.value());
-        }
         self.setpoint.plane = piece.place(point);
         if let Some(further) = piece.further(tau) {
             self.setpoint.further = further;
@@ -334,6 +336,7 @@ impl<T: Real, const F: usize> Executor<T, F> {
         self.tau = Accumulator::new(-T::HALF);
         self.theta = self.tau;
         self.rate = piece.start_rate();
+        self.piece_order = piece.order(self.order);
         self.entered = self.entered.wrapping_add(1);
         self.at_node = false;
         if self.state == State::Starved {
@@ -368,7 +371,7 @@ impl<T: Real, const F: usize> Executor<T, F> {
             }
             self.stand_at_start();
             let Some(piece) = &self.active else { return false };
-            match advance(piece, &mut self.tau, &mut self.theta, self.rate, self.order, left) {
+            match advance(piece, &mut self.tau, &mut self.theta, self.rate, self.piece_order, left) {
                 None => return true,
                 Some(rest) => left = rest,
             }
@@ -468,12 +471,18 @@ impl<T: Real, const F: usize> Executor<T, F> {
         let piece = self.entered.checked_sub(1)?;
         let tau = self.tau.value();
         let parameter = self.active.map_or(tau, |piece| piece.parameter(tau));
-        Some(Place { piece, tau, parameter, rate: self.rate, point: self.point })
+        Some(Place { piece, tau, parameter, rate: self.rate_of_feed(), point: self.point })
+    }
+
+    /// The rate of (21) where the last tick ended, in 1/s. Not for the tick.
+    fn rate_of_feed(&self) -> T {
+        let profile = self.active.as_ref().and_then(ActivePiece::profile);
+        profile.map_or(self.rate, |profile| self.rate * profile.factor(self.theta.value()))
     }
 
     /// The centre feed V_d at which the last tick ended, in mm/s. Not for the tick.
     pub fn centre_feed(&self) -> T {
-        self.active.map_or(T::ZERO, |piece| piece.centre_speed(self.tau.value()) * self.rate * self.pace())
+        self.active.map_or(T::ZERO, |piece| piece.centre_speed(self.tau.value()) * self.rate_of_feed() * self.pace())
     }
 
     /// The arc-length fraction u on the piece at which the last tick ended.

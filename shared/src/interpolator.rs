@@ -6,7 +6,8 @@ use crate::jet::Jet;
 use crate::piece::Order;
 use crate::real::Real;
 
-/// Moves `tau` along `piece` for `time` seconds, and `theta` where the piece has a profile. `rate` is the rate of (21) at `tau`.
+/// Moves `tau` along `piece` for `time` seconds, and `theta` where the piece has a profile. `rate` is the rate of (21) at `tau`, along a profile
+/// that of F = 1, and `order` is what [`ActivePiece::order`] makes of that of the path.
 ///
 /// Returns the time that is left when the end of the piece comes first; `tau` then says nothing any more. The step is the
 /// same function of time whether or not the piece ends within it, so that a node changes nothing but the curve.
@@ -16,23 +17,35 @@ pub fn advance<T: Real, const F: usize>(
     tau: &mut Accumulator<T>,
     theta: &mut Accumulator<T>,
     rate: T,
-    order: Order,
+    order: Option<Order>,
     time: T,
 ) -> Option<T> {
-    if let Some(profile) = piece.profile() {
-        let left = profile.advance(theta, time);
-        if left.is_none() {
-            // The step of (22), and to where the time says.
-            piece.seek(tau, rate * time, profile.fraction(theta.value()));
-        }
-        return left;
-    }
     match order {
-        Order::First => first(tau, rate, time),
-        Order::Second => taylor(piece, tau, time, false),
-        Order::Third => taylor(piece, tau, time, true),
-        Order::Exact => exact(piece, tau, time),
+        Some(Order::First) => first(tau, rate, time),
+        Some(Order::Second) => taylor(piece, tau, time, false),
+        Some(Order::Third) => taylor(piece, tau, time, true),
+        Some(Order::Exact) => exact(piece, tau, time),
+        None => timed(piece, tau, theta, rate, time),
     }
+}
+
+/// Along a profile: the step of equation (22) with the mean of F, and to where the time says.
+#[inline(never)]
+fn timed<T: Real, const F: usize>(
+    piece: &ActivePiece<T, F>,
+    tau: &mut Accumulator<T>,
+    theta: &mut Accumulator<T>,
+    rate: T,
+    time: T,
+) -> Option<T> {
+    let profile = piece.profile()?;
+    let before = profile.fraction(theta.value());
+    let left = profile.advance(theta, time);
+    if left.is_none() {
+        let fraction = profile.fraction(theta.value());
+        piece.seek(tau, rate * profile.way(fraction - before), fraction);
+    }
+    left
 }
 
 /// The first-order step of equation (22). A division only where the piece ends.

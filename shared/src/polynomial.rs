@@ -25,6 +25,17 @@ impl<C: Copy, const N: usize> Polynomial<C, N> {
 }
 
 impl<T: Real, const N: usize> Polynomial<T, N> {
+    /// The value and the derivative at `x`: 2 N - 3 multiplications and additions.
+    #[inline(always)]
+    pub fn value_and_slope(&self, x: T) -> (T, T) {
+        let (mut value, mut slope) = (T::ZERO, T::ZERO);
+        for &c in self.0.iter().rev() {
+            slope = slope * x + value;
+            value = value * x + c;
+        }
+        (value, slope)
+    }
+
     /// The Bernstein coefficients over `from..=from + width`. Load time: some 2 N^2 operations.
     pub fn bernstein(&self, from: T, width: T) -> [T; N] {
         // Powers of x in from + width x, by repeated synthetic division.

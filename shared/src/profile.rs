@@ -32,11 +32,12 @@ pub struct Profile<T> {
 /// A profile that the tick may use. The time theta runs over -1/2..=1/2 on the piece.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ActiveProfile<T> {
-    /// u - 1/2, and F, in powers of theta.
+    /// u - 1/2 in powers of theta.
     fraction: Polynomial<T, 5>,
-    factor: Polynomial<T, 4>,
     duration: T,
     per_duration: T,
+    /// S/V in s.
+    per_base: T,
 }
 
 impl<T: Real> ActiveProfile<T> {
@@ -70,7 +71,7 @@ impl<T: Real> ActiveProfile<T> {
         if !(duration.is_finite() && duration > T::ZERO) {
             return Err(PathError::NotFinite);
         }
-        Ok(Self { fraction: Polynomial(fraction), factor: Polynomial(factor), duration, per_duration: base / scale })
+        Ok(Self { fraction: Polynomial(fraction), duration, per_duration: base / scale, per_base: T::ONE / base })
     }
 
     /// u - 1/2 at the time theta: from -1/2 to 1/2. 4 multiplications and additions.
@@ -79,10 +80,16 @@ impl<T: Real> ActiveProfile<T> {
         self.fraction.at(theta, T::ZERO)
     }
 
-    /// F at the time theta, to rounding within 0..=1. 3 multiplications and additions.
-    #[inline(always)]
+    /// F at the time theta, to rounding within 0..=1. For reports: the tick asks for u.
     pub fn factor(&self, theta: T) -> T {
-        self.factor.at(theta, T::ZERO).most(T::ZERO)
+        let (_, slope) = self.fraction.value_and_slope(theta);
+        (slope * self.per_duration * self.per_base).most(T::ZERO)
+    }
+
+    /// The integral of F over the time in which the fraction grows by `step`, in s.
+    #[inline(always)]
+    pub fn way(&self, step: T) -> T {
+        step * self.per_base
     }
 
     /// The time that the piece takes, in s.

@@ -5,6 +5,7 @@ use shared::curve::{Arc, Curve, Line, PhQuintic, Segment, Spline};
 use shared::feed::Ramp;
 use shared::fixed::{Fixed, Position, round_point};
 use shared::piece::{Piece, Shape, SplineShape};
+use shared::profile::Profile;
 use shared::real::Real;
 
 /// What a planner knows of one piece. Lengths in mm, feeds in mm/s.
@@ -22,18 +23,25 @@ pub struct Draft {
     pub start: Option<Ramp<f64>>,
     /// The ramp at the end.
     pub end: Option<Ramp<f64>>,
+    /// The feed over time, in the place of ramps.
+    pub profile: Option<Profile<f64>>,
 }
 
 impl Draft {
     /// A whole segment without ramps.
     pub fn whole(segment: Segment<f64>, offset: f64, feed: f64) -> Self {
-        Self { segment, interval: [0.0, 1.0], offset, feed, start: None, end: None }
+        Self { segment, interval: [0.0, 1.0], offset, feed, start: None, end: None, profile: None }
     }
 
     /// The same with a ramp of length lambda and factor f at both ends.
     pub fn ramped(self, length: f64, factor: f64) -> Self {
         let ramp = Some(Ramp { length, factor });
         Self { start: ramp, end: ramp, ..self }
+    }
+
+    /// The same with F over time by these coefficients.
+    pub fn timed(self, factors: [f64; 4]) -> Self {
+        Self { profile: Some(Profile { factors }), ..self }
     }
 
     /// The same over a part of its interval; `from` and `to` are fractions of it.
@@ -77,7 +85,7 @@ impl Draft {
             feed: number(self.feed),
             start: self.start.map(ramp),
             end: self.end.map(ramp),
-            profile: None,
+            profile: self.profile.map(|Profile { factors }| Profile { factors: factors.map(number) }),
             further: None,
             last: None,
         }

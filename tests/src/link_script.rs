@@ -16,6 +16,7 @@ use shared::link::{
 use shared::motion::MotionCommand;
 use shared::pace::PaceLimits;
 use shared::piece::{Header, Order, Piece, Shape};
+use shared::profile::Profile;
 use shared::safety::{Coordinates, End, Fault, Refused};
 
 use crate::strict_machine::StrictMachine;
@@ -50,6 +51,8 @@ pub fn commands() -> Vec<Command> {
     // The first piece says where z is, or no later one could move it.
     let rests = Some(Travel { from: [Fixed(0)], to: [Fixed(0)] });
     let ph = Piece { start: ramp, end: ramp, further: rests, ..piece(Shape::Ph { preimage: w, offset: 0.25 }) };
+    let profile = Some(Profile { factors: [0.0, 0.25, 1.0, 1.0] });
+    let timed = Piece { profile, ..piece(Shape::Ph { preimage: w, offset: -0.5 }) };
     let further = Some(Travel { from: [Fixed(0)], to: [Fixed(262_144)] });
     let motion = [
         MotionCommand::Hold,
@@ -79,6 +82,8 @@ pub fn commands() -> Vec<Command> {
         Command::Hello { version: VERSION, session: SESSION },
     ];
     commands.extend(motion.map(Action::Motion).into_iter().chain(actions).map(Command::Act));
+    // Behind the others, so that a script of before says what it said.
+    commands.extend([timed, Piece { profile, ..piece(arc) }].map(Command::Piece));
     commands
 }
 

@@ -172,9 +172,12 @@ impl Draft {
             .sum()
     }
 
-    /// The time of the whole piece.
+    /// The time of the whole piece: along a profile S/V over the mean of F, which is that of its coefficients.
     pub fn duration(&self, weight: f64) -> f64 {
         let [from, to] = self.interval;
+        if let Some(profile) = self.profile {
+            return integral(&|xi| self.sigma(xi), from, to) / self.feed * 4.0 / profile.factors.iter().sum::<f64>();
+        }
         self.time(from, to, weight)
     }
 

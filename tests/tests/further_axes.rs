@@ -19,9 +19,9 @@ fn at(mm: f64) -> Fixed {
 
 /// A draft as a piece whose further axes travel so.
 fn piece<const F: usize>(draft: &Draft, from: [f64; F], to: [f64; F]) -> Piece<f32, F> {
-    let Piece { origin, shape, interval, feed, start, end, last, .. } = draft.piece::<f32>();
+    let Piece { origin, shape, interval, feed, start, end, profile, last, .. } = draft.piece::<f32>();
     let further = Some(Travel { from: from.map(at), to: to.map(at) });
-    Piece { origin, shape, interval, feed, start, end, further, last }
+    Piece { origin, shape, interval, feed, start, end, profile, further, last }
 }
 
 fn last<const F: usize>(mut pieces: Vec<Piece<f32, F>>, draft: &Draft) -> Vec<Piece<f32, F>> {

@@ -167,6 +167,7 @@ fn published_contour(factor: f64) -> Option<Vec<Draft>> {
             feed: 200.0 * INCH / 60.0,
             start: ramp("mod0"),
             end: ramp("mod1"),
+            profile: None,
         }
     });
     Some(pieces.collect())

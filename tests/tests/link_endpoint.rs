@@ -17,7 +17,7 @@ use shared::pace::PaceLimits;
 use shared::piece::{Header, Order, Piece, Shape};
 use shared::safety::{Coordinates, Refused};
 use tests::bench::{controller, mill};
-use tests::link_script::{play, wrap};
+use tests::link_script::{commands, play, wrap};
 use tests::strict_machine::StrictMachine;
 
 const SESSION: u32 = 0x0051_0e55;
@@ -245,6 +245,11 @@ fn good_commands_of_a_script_reach_the_machine() {
     // As they are, in their turn: begin, two pieces, run, an override; some ticks, and a piece that lacks its end.
     let machine = play(&[0, 0, 0, 0, 1, 0, 0, 2, 0, 0, 5, 0, 0, 13, 0, 7, 1, 0, 3, 0]);
     assert_eq!((machine.taken, machine.started, machine.acted), (3, 1, 1));
+    assert!(machine.state().is_moving());
+    // The same with pieces that have profiles: they are the last two commands.
+    let [timed, arc] = [2, 1].map(|back| (commands().len() - back) as u8);
+    let machine = play(&[0, 0, 0, 0, 1, 0, 0, timed, 0, 0, arc, 0, 0, 5, 0, 7, 1]);
+    assert_eq!((machine.taken, machine.started), (3, 1));
     assert!(machine.state().is_moving());
 }
 

@@ -21,8 +21,6 @@ pub(super) struct Ph<T> {
     /// u of equations (6) and (9).
     pub(super) u: Polynomial<T, 6>,
     offset: T,
-    /// V/S: what u grows by in a second at the feed.
-    mean_rate: T,
     /// V (1 - w) and V w.
     contact: T,
     centre: T,
@@ -88,27 +86,22 @@ impl<T: Real> Ph<T> {
             y: Polynomial(r.map(|z| z.im)),
             u: Polynomial(u),
             offset,
-            mean_rate: contact * per_length,
             contact,
             centre,
         })
     }
 
-    /// V/S in 1/s, at w = 0.
+    /// V/S in 1/s, where w = 0: what u grows by in a second at the feed.
     pub(super) fn mean_rate(&self) -> T {
-        self.mean_rate
+        let (_, slope) = self.fraction_and_slope(T::ZERO);
+        self.base(T::ZERO) * slope
     }
 
     /// u - 1/2 and its derivative by tau. 9 multiplications and additions.
     #[inline(always)]
     pub(super) fn fraction_and_slope(&self, tau: T) -> (T, T) {
-        let Polynomial([u0, rest @ ..]) = self.u;
-        let (mut value, mut slope) = (T::ZERO, T::ZERO);
-        for &c in rest.iter().rev() {
-            slope = slope * tau + value;
-            value = value * tau + c;
-        }
-        (value * tau + (u0 - T::HALF), slope * tau + value)
+        let Polynomial([u0, u1, u2, u3, u4, u5]) = self.u;
+        Polynomial([u0 - T::HALF, u1, u2, u3, u4, u5]).value_and_slope(tau)
     }
 
     #[inline(always)]

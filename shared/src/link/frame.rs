@@ -164,6 +164,7 @@ mod tests {
     use crate::fixed::Fixed;
     use crate::further::Travel;
     use crate::piece::{Piece, Shape, SplineShape};
+    use crate::profile::Profile;
     use crate::safety::{Fault, HomingFault, State};
     use crate::spline::CorrectionOrder;
 
@@ -205,10 +206,14 @@ mod tests {
             bow: [f32::MAX; 4],
             correction: CorrectionOrder::Ninth,
         };
-        let longest = Piece { shape: Shape::Spline(spline), ..piece(f32::MAX, i32::MAX) };
-        let longest = encode(SESSION, u16::MAX, &Command::Piece(longest)).unwrap();
+        let spline = Piece { shape: Shape::Spline(spline), ..piece(f32::MAX, i32::MAX) };
+        let longest = encode(SESSION, u16::MAX, &Command::Piece(spline)).unwrap();
         assert!(longest.len() <= FRAME_SIZE, "a spline: {}", longest.len());
         assert!(frame.len() < FRAME_SIZE);
+        // A profile takes the place of two ramps, byte for byte.
+        let profile = Some(Profile { factors: [f32::MAX; 4] });
+        let timed = encode(SESSION, u16::MAX, &Command::Piece(Piece { start: None, end: None, profile, ..spline }));
+        assert_eq!(timed.unwrap().len(), longest.len());
         let telemetry = Telemetry {
             machine: State::EStop,
             fault: Some(Fault::Homing { axis: u8::MAX, fault: HomingFault::Stuck }),
@@ -235,7 +240,7 @@ mod tests {
         assert!(encode(SESSION, u16::MAX, &write).is_some());
         let answer = Answer::Image { length: u16::MAX, crc: u32::MAX, offset: u16::MAX, chunk };
         assert!(encode(SESSION, u16::MAX, &Report::Done { number: u16::MAX, outcome: Ok(answer) }).is_some());
-        let reason = Refusal::Path(PathError::Interval { from: f32::MIN, to: f32::MAX });
+        let reason = Refusal::Path(PathError::Profile { factors: [f32::MAX; 4] });
         assert!(encode(SESSION, u16::MAX, &Report::Refused { sequence: u16::MAX, reason }).is_some());
     }
 

@@ -8,7 +8,7 @@ use shared::piece::Order;
 use crate::Error;
 use crate::calls::Calls;
 use crate::image::Image;
-use crate::jobs::{Kind, ORDERS, diagonal, job};
+use crate::jobs::{Kind, diagonal, job};
 use crate::machine::Mounting;
 use crate::probe::EXCEPTION_FRAME;
 use crate::reach::Reach;
@@ -27,7 +27,7 @@ const FIT_ROW: &str = "fit of a cubic";
 /// Every figure.
 #[derive(Clone, Debug, Serialize)]
 pub struct Budget {
-    /// By kind of piece and order, such as `ph 1`: instructions per stage in the middle of a ramp; and of the whole
+    /// By kind of piece and order, such as `ph 1` or, along a profile, `ph profile`: instructions per stage in the middle of a ramp; and of the whole
     /// interrupt the median, the tick that crosses a node, and the most of all, those at rest and at the start among them. One row is what
     /// loading a spline piece takes beside.
     pub instructions: BTreeMap<String, BTreeMap<String, u32>>,
@@ -53,7 +53,7 @@ pub fn measure(image: &Image, servos: &Mounting, mut progress: impl FnMut(&str))
     let mut instructions = BTreeMap::new();
     let mut stack = 0;
     for kind in Kind::ALL {
-        for (order, order_name) in ORDERS {
+        for &(order, order_name) in kind.orders() {
             let name = format!("{} {order_name}", kind.name());
             progress(&name);
             let (header, pieces) = job(kind, order);

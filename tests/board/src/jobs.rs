@@ -7,6 +7,7 @@ use shared::fixed::{Fixed, round_point};
 use shared::further::Travel;
 use shared::pace::PaceLimits;
 use shared::piece::{Header, Order, Piece, Shape, SplineShape};
+use shared::profile::Profile;
 use shared::spline::CorrectionOrder;
 
 /// The kinds of pieces.
@@ -20,20 +21,34 @@ pub enum Kind {
     Arc,
     /// A polynomial cubic under a feed correction polynomial of the seventh order.
     Spline,
+    /// The PH curve with a profile.
+    TimedPh,
+    /// The line with a profile.
+    TimedLine,
 }
 
 impl Kind {
     /// All of them.
-    pub const ALL: [Self; 4] = [Self::Ph, Self::Line, Self::Arc, Self::Spline];
+    pub const ALL: [Self; 6] = [Self::Ph, Self::Line, Self::Arc, Self::Spline, Self::TimedPh, Self::TimedLine];
 
     /// Its name in tables.
     pub fn name(self) -> &'static str {
         match self {
-            Self::Ph => "ph",
-            Self::Line => "line",
+            Self::Ph | Self::TimedPh => "ph",
+            Self::Line | Self::TimedLine => "line",
             Self::Arc => "arc",
             Self::Spline => "spline",
         }
+    }
+
+    /// The orders that are told apart on such pieces, and their names in tables: none of them along a profile.
+    pub fn orders(self) -> &'static [(Order, &'static str)] {
+        if self.is_timed() { &[(Order::First, "profile")] } else { &ORDERS }
+    }
+
+    /// Whether its pieces have profiles.
+    fn is_timed(self) -> bool {
+        matches!(self, Self::TimedPh | Self::TimedLine)
     }
 }
 
@@ -41,23 +56,33 @@ impl Kind {
 pub const ORDERS: [(Order, &str); 4] =
     [(Order::First, "1"), (Order::Second, "2"), (Order::Third, "3"), (Order::Exact, "exact")];
 
-/// Two pieces of about 20 mm at 50 mm/s, half a second each, with ramps at both ends, so that the path has a node; the weight is in
-/// the middle, so that no term of the feed law vanishes.
+/// Two pieces of about 20 mm at 50 mm/s, half a second each, with ramps at both ends, so that the path has a node, or with profiles that
+/// begin and end at the same speed as these; the weight is in the middle, so that no term of the feed law vanishes.
 pub fn job(kind: Kind, order: Order) -> (Header<f32>, Vec<Piece<f32>>) {
     let header = Header { weight: 0.5, order, closed: false, tolerance: 1e-3, rest: false, pace: PaceLimits::USUAL };
     let shape = match kind {
-        Kind::Ph => Shape::Ph {
+        Kind::Ph | Kind::TimedPh => Shape::Ph {
             preimage: [Complex::new(4.2, 0.3), Complex::new(-0.4, 1.1), Complex::new(0.2, -0.3)],
             offset: -3.0,
         },
-        Kind::Line => Shape::Line { chord: Complex::new(16.0, 12.0) },
+        Kind::Line | Kind::TimedLine => Shape::Line { chord: Complex::new(16.0, 12.0) },
         Kind::Arc => Shape::Arc { radius: Complex::new(10.0, 0.0), sweep: 2.0, ratio: 1.25 },
         Kind::Spline => Shape::Spline(flat([(16.0, 9.0), (-4.0, 7.0), (6.0, -5.0)], CorrectionOrder::Seventh)),
     };
-    let ramp = Some(Ramp { length: 0.25, factor: 0.25 });
+    let ramp = (!kind.is_timed()).then_some(Ramp { length: 0.25, factor: 0.25 });
+    let profile = kind.is_timed().then_some(Profile { factors: [0.25, 1.0, 1.0, 0.25] });
     let origin = round_point(Complex::new(30.0, 20.0));
-    let first =
-        Piece { origin, shape, interval: [0.0, 1.0], feed: 50.0, start: ramp, end: ramp, profile: None, further: None, last: None };
+    let first = Piece {
+        origin,
+        shape,
+        interval: [0.0, 1.0],
+        feed: 50.0,
+        start: ramp,
+        end: ramp,
+        profile,
+        further: None,
+        last: None,
+    };
     twice(header, first)
 }
 
@@ -170,6 +195,33 @@ pub fn splines(order: Order) -> (Header<f32>, Vec<Piece<f32>>) {
     (header, pieces)
 }
 
+/// Pieces of every shape with profiles, from rest to rest at 30 mm/s: an offset PH curve, a line, an arc whose centre goes farther than the
+/// contact point, a cubic that bends in z, a short PH curve whose speed changes much in a few ticks; about 1.5 s.
+pub fn profiles(order: Order) -> (Header<f32>, Vec<Piece<f32>>) {
+    let header = Header { weight: 0.5, order, closed: false, tolerance: 1e-3, rest: false, pace: PaceLimits::USUAL };
+    let ph =
+        |preimage: [(f32, f32); 3], offset| Shape::Ph { preimage: preimage.map(|(x, y)| Complex::new(x, y)), offset };
+    let bent = SplineShape {
+        bow: [6.0, -2.0, 1.0, 0.5],
+        ..flat([(9.0, 4.0), (-2.0, 5.0), (3.0, -4.0)], CorrectionOrder::Seventh)
+    };
+    let travel = |from: f64, to: f64| Some(Travel { from: [Fixed::from_mm(from)], to: [Fixed::from_mm(to)] });
+    let shapes = [
+        (ph([(3.0, 0.3), (-0.4, 1.1), (0.2, -0.3)], -1.0), travel(1.0, 1.0)),
+        (Shape::Line { chord: Complex::new(3.0, 4.0) }, travel(1.0, 2.0)),
+        (Shape::Arc { radius: Complex::new(5.0, 0.0), sweep: 2.0, ratio: 1.25 }, None),
+        (Shape::Spline(bent), travel(2.0, 3.5)),
+        (ph([(0.5, 0.0), (0.6, 0.3), (0.2, 0.2)], 0.0), None),
+    ];
+    let (header, mut pieces) = chain(header, round_point(Complex::new(5.0, 8.0)), 30.0, shapes);
+    let speeds = [0.0, 1.0, 0.4, 0.8, 0.6, 0.0];
+    let inner = [[0.1, 0.9], [0.9, 0.5], [0.4, 0.6], [1.0, 0.7], [0.6, 0.0]];
+    for ((piece, ends), [b1, b2]) in pieces.iter_mut().zip(speeds.windows(2)).zip(inner) {
+        piece.profile = Some(Profile { factors: [ends[0], b1, b2, ends[1]] });
+    }
+    (header, pieces)
+}
+
 /// Shapes one behind the other from the point `at`, with the ways of z.
 fn chain(
     header: Header<f32>,
@@ -180,7 +232,8 @@ fn chain(
     let mut pieces: Vec<Piece<f32>> = Vec::new();
     for (shape, further) in shapes {
         let interval = [0.0, 1.0];
-        let mut piece = Piece { origin: at, shape, interval, feed, start: None, end: None, profile: None, further, last: None };
+        let mut piece =
+            Piece { origin: at, shape, interval, feed, start: None, end: None, profile: None, further, last: None };
         let Some([start, _]) = ends(&header, &piece) else { return (header, Vec::new()) };
         for (origin, (at, start)) in piece.origin.iter_mut().zip(at.into_iter().zip(start)) {
             origin.0 += at.0 - start.0;
@@ -206,6 +259,9 @@ fn ends(header: &Header<f32>, piece: &Piece<f32>) -> Option<[[Fixed; 2]; 2]> {
 pub fn expected_seconds(header: &Header<f32>, pieces: &[Piece<f32>]) -> f64 {
     let slowest = |piece: &Piece<f32>| {
         let active = ActivePiece::activate(piece, header.weight, shared::TICK).ok()?;
+        if let Some(profile) = active.profile() {
+            return Some(f64::from(profile.duration()));
+        }
         // Sixteen looks along the piece; the caller has patience beside this.
         let rates = (0..=16).map(|k| active.rate(k as f32 / 16.0 - 0.5));
         rates.reduce(f32::min).map(|rate| 1.0 / f64::from(rate))

@@ -17,7 +17,7 @@ pub const STAGES: [(&str, &[&str]); 9] = [
     ("executor", &["shared/src/executor.rs", "shared/src/motion.rs", "shared/src/supply.rs"]),
     ("pace", &["shared/src/pace/mod.rs", "shared/src/pace/lattice.rs"]),
     ("interpolator", &["shared/src/interpolator.rs", "shared/src/accumulator.rs"]),
-    ("feed law", &["shared/src/feed.rs"]),
+    ("feed law", &["shared/src/feed.rs", "shared/src/profile.rs"]),
     (
         "curve",
         &["shared/src/active.rs", "shared/src/active/ph.rs", "shared/src/active/spline.rs", "shared/src/further.rs"],
@@ -29,7 +29,11 @@ pub const STAGES: [(&str, &[&str]); 9] = [
 ];
 
 /// Functions that belong to another stage than their file.
-const FUNCTIONS: [(&str, &str); 2] = [("ActivePiece<", "::factor"), ("ActivePiece<", "::fraction")];
+const FUNCTIONS: [(&str, &str, &str); 3] = [
+    ("ActivePiece<", "::factor", "feed law"),
+    ("ActivePiece<", "::fraction", "feed law"),
+    ("ActivePiece<", "::seek", "interpolator"),
+];
 
 /// Tells stages by addresses.
 pub struct Stages {
@@ -49,8 +53,9 @@ impl Stages {
         // From the innermost call outwards.
         while let Ok(Some(frame)) = frames.next() {
             let name = frame.function.as_ref().and_then(|name| name.demangle().ok()).unwrap_or_default();
-            if FUNCTIONS.iter().any(|(of, function)| name.contains(of) && name.contains(function)) {
-                return "feed law";
+            let apart = FUNCTIONS.iter().find(|(of, function, _)| name.contains(of) && name.contains(function));
+            if let Some((_, _, stage)) = apart {
+                return stage;
             }
             let Some(file) = frame.location.as_ref().and_then(|location| location.file) else { continue };
             let file = file.replace('\\', "/");

@@ -2,7 +2,7 @@
 
 mod common;
 
-use board::jobs::splines;
+use board::jobs::{profiles, splines};
 use board::run::run_job;
 use common::{image, root, servos, start_of};
 use host_sim::job::{FeedOverride, Job, Reduction};
@@ -127,6 +127,24 @@ fn polynomial_splines() {
         assert!(z(f64::min) >= 1.0 && z(f64::max) > 3.6, "{} to {} mm", z(f64::min), z(f64::max));
         assert_eq!(host.setpoints.last().unwrap()[2], Fixed::from_mm(2.0).0);
         let ticks = compare_with(&host, header, pieces, &format!("splines, {order:?}"));
+        assert!(ticks > 1_000, "{ticks}");
+    }
+}
+
+/// Pieces of every shape with a feed over time, from rest to rest, on the host and on the target.
+#[test]
+fn feeds_over_time() {
+    for order in [Order::First, Order::Exact] {
+        let (header, pieces) = profiles(order);
+        assert_eq!(pieces.len(), 5);
+        let host = on_host(&header, &pieces);
+        // From rest, and to rest: the first tick and the last one go less than a micrometre.
+        let far = |pair: &[[i32; 3]]| (0..3).map(|axis| (pair[1][axis] - pair[0][axis]).abs()).max().unwrap();
+        let [x, y, _] = start_of(&header, &pieces);
+        let first = [[x.0, y.0, Fixed::from_mm(1.0).0], host.setpoints[0]];
+        let last = host.setpoints.last_chunk::<2>().unwrap();
+        assert!(far(&first) < 262 && far(last) < 262, "{} and {} units", far(&first), far(last));
+        let ticks = compare_with(&host, header, pieces, &format!("profiles, {order:?}"));
         assert!(ticks > 1_000, "{ticks}");
     }
 }
