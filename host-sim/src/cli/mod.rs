@@ -8,6 +8,8 @@ mod motion;
 mod offset;
 mod output;
 mod pacing;
+mod plan;
+mod planning;
 mod prepare;
 mod reproduce;
 mod simulate;
@@ -37,6 +39,7 @@ pub struct Cli {
 enum Verb {
     Simulate(simulate::Simulate),
     Offset(offset::OffsetVerb),
+    Plan(plan::PlanVerb),
     Reproduce(reproduce::Reproduce),
     Prepare(prepare::Prepare),
     Stream(stream::Stream),
@@ -50,6 +53,7 @@ impl Cli {
         match self.verb {
             Verb::Simulate(verb) => verb.run(),
             Verb::Offset(verb) => verb.run(),
+            Verb::Plan(verb) => verb.run(),
             Verb::Reproduce(verb) => verb.run(),
             Verb::Prepare(verb) => verb.run(),
             Verb::Stream(verb) => verb.run(),

@@ -7,6 +7,8 @@ use host_sim::path::Path;
 use shared::machine::MachineSettings;
 use shared::piece::Order;
 
+use super::planning::{Planned, Planning};
+
 /// A job and what the command line says of its motion.
 #[derive(Args)]
 pub struct Motion {
@@ -35,8 +37,16 @@ pub struct Motion {
     /// The machine that shall run it: a job that leaves the machine's travel is refused, and a simulation says what it asks of the axes
     #[arg(long, value_name = "MACHINE.toml")]
     machine: Option<String>,
+    /// Where on the machine the job's zero stands, in the job's units, as 100,50: what lies within its travel depends on it
+    #[arg(long, value_name = "X,Y", value_parser = zero_from, default_value = "0,0", allow_hyphen_values = true)]
+    zero: [f64; 2],
     #[command(flatten)]
     pacing: super::pacing::Pacing,
+    /// Plan the feed within the limits of --machine: as fast as its axes bear, from rest to rest. Without it the job's own feed law is run
+    #[arg(long, requires = "machine")]
+    plan: bool,
+    #[command(flatten)]
+    planning: Planning,
 }
 
 /// The interpolator's order as it is written.
@@ -56,14 +66,45 @@ pub enum OrderName {
     Exact,
 }
 
+/// Two numbers with a comma between them.
+fn zero_from(text: &str) -> Result<[f64; 2], String> {
+    let number = |part: &str| part.trim().parse().ok().filter(|x: &f64| x.is_finite());
+    let both = text.split_once(',').and_then(|(x, y)| Some([number(x)?, number(y)?]));
+    both.ok_or_else(|| "two numbers with a comma between them are needed, as 100,50".to_string())
+}
+
 impl Motion {
+    /// Whether the job's zero is said to stand elsewhere than the machine's.
+    pub fn is_elsewhere(&self) -> bool {
+        self.zero != [0.0; 2]
+    }
+
     /// The machine that was named.
     pub fn machine(&self) -> Result<Option<MachineSettings>, InputError> {
         self.machine.as_deref().map(host_sim::machine::read).transpose()
     }
 
-    /// Reads the job and makes its path.
-    pub fn path(&self) -> Result<(Job, Path), InputError> {
+    /// Reads the job and makes its path, planned where that is asked for; `plant` is what a budget of contour error is about.
+    pub fn path(&self, plant: Option<&str>) -> Result<(Job, Path), InputError> {
+        let (job, path) = self.unplanned()?;
+        if !self.plan {
+            return Ok((job, path));
+        }
+        let Planned { path, .. } = self.plan(&path, &job, plant)?;
+        Ok((job, path))
+    }
+
+    /// Plans a path for the machine that was named.
+    pub fn plan(&self, path: &Path, job: &Job, plant: Option<&str>) -> Result<Planned, InputError> {
+        let Some(name) = &self.machine else {
+            return Err(InputError::new("--machine", "a plan needs the limits of a machine; name its file"));
+        };
+        let (machine, settings) = host_sim::machine::read_for_plan(name)?;
+        self.planning.plan(path, job, (name, &machine, &settings), plant)
+    }
+
+    /// Reads the job and makes its path, at the job's own feed.
+    pub fn unplanned(&self) -> Result<(Job, Path), InputError> {
         let by = FeedOverride { rate: self.feed, weight: self.weight, reduction: self.reduction, ramp: self.ramp };
         let job = Job::read(&self.job)?.with_feed(by)?.with_loop(self.chosen);
         let order = match self.order {
@@ -76,7 +117,8 @@ impl Motion {
         if let Some(name) = &self.machine {
             let machine = host_sim::machine::read(name)?.activate();
             let machine = machine.map_err(|error| InputError::new(name, error))?;
-            path.check_travel(&job, &machine.soft_limits())?;
+            let zero = self.zero.map(|x| x * job.units.mm());
+            path.check_travel(&job, &machine.soft_limits().seen_from(zero))?;
         }
         Ok((job, path))
     }

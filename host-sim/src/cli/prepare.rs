@@ -21,7 +21,7 @@ pub struct Prepare {
 impl Prepare {
     /// Reads, checks and writes.
     pub fn run(self) -> Result<(), Failure> {
-        let (_, path) = self.motion.path()?;
+        let (_, path) = self.motion.path(None)?;
         let bytes = prepare(&path).map_err(|error| failed(&self.output, error))?;
         write(&self.output, &bytes)
     }

@@ -4,7 +4,6 @@ use std::io::Write;
 
 use clap::Args;
 use host_sim::job::{Job, Units};
-use host_sim::measure::peaks::Verdict;
 use host_sim::path::Path;
 use host_sim::plan::{Demand, Recorder};
 use host_sim::plant::{Measured, Plant};
@@ -18,6 +17,7 @@ use shared::motion::MotionCommand;
 use super::Failure;
 use super::motion::Motion;
 use super::output::{create, failed, json, write};
+use super::plan::print_demand;
 
 /// Run a job through the controller's tick, on a simulated machine or an ideal one
 #[derive(Args)]
@@ -60,7 +60,7 @@ pub struct Simulate {
 impl Simulate {
     /// Simulates, and writes what was asked for.
     pub fn run(self) -> Result<(), Failure> {
-        let (job, path) = self.motion.path()?;
+        let (job, path) = self.motion.path(self.plant.as_deref())?;
         let plant = self.plant.as_deref().map(super::read_plant).transpose()?;
         let machine = self.motion.machine()?;
         let mut recorder = machine.as_ref().map(|_| Recorder::new(&path));
@@ -152,33 +152,6 @@ struct Found<'a> {
     outcome: &'a Outcome,
     #[serde(skip_serializing_if = "Option::is_none")]
     demand: Option<&'a Demand>,
-}
-
-/// What the run asks of the machine, quantity by quantity.
-fn print_demand(demand: &Demand, units: Units) {
-    let unit = units.short();
-    println!("asked of the machine");
-    for axis in &demand.axes {
-        for (name, asked, per) in
-            [("velocity", &axis.velocity, "s"), ("acceleration", &axis.acceleration, "s2"), ("jerk", &axis.jerk, "s3")]
-        {
-            let percent = 100.0 * asked.peak / asked.limit;
-            let verdict = match asked.verdict {
-                Verdict::Kept => "",
-                Verdict::Exceeded => ", MORE THAN IT BEARS",
-                Verdict::Open => ", not certain",
-            };
-            println!(
-                "  {} {name:13} {:>12.1} of {:.1} {unit}/{per}, {percent:.0} % at {:.3} s{verdict}",
-                axis.axis, asked.peak, asked.limit, asked.at_s
-            );
-        }
-        println!("  {} corner step   {:>12.1} {unit}/s", axis.axis, axis.corner_step);
-    }
-    println!(
-        "  least time    {:>14.3} s within its velocities and accelerations, at the job's feed and these corner steps",
-        demand.least_time_s
-    );
 }
 
 type Csv = Option<Box<dyn Write>>;

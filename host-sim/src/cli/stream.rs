@@ -58,8 +58,16 @@ pub struct Stream {
 impl Stream {
     /// Sends, and shows how it goes.
     pub fn run(self) -> Result<(), Failure> {
-        let (job, mut path) = self.motion.path()?;
-        path.header.rest = true;
+        if self.motion.is_elsewhere() && !self.from_here {
+            return Err(InputError::new(
+                "--zero",
+                "a job is sent in the machine's coordinates; move its zero with --from-here, which begins where the machine stands",
+            )
+            .into());
+        }
+        let (job, mut path) = self.motion.path(None)?;
+        // A plan is at rest at its ends by itself.
+        path.header.rest = !path.is_planned();
         let pieces: Vec<Piece<f32>> = path.wire().collect();
         let mut log = Log::create(self.log.as_deref())?;
         let mut line = transport::open(&self.port, self.baud)?;

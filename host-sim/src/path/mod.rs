@@ -78,6 +78,11 @@ impl Path {
         if loader.is_finished() { Ok(()) } else { Err((0, PathError::Empty)) }
     }
 
+    /// Whether its pieces have their feed over time.
+    pub fn is_planned(&self) -> bool {
+        self.pieces.iter().any(|piece| piece.profile.is_some())
+    }
+
     /// The exact last point.
     pub fn end(&self) -> Position {
         let point = self.pieces.last().map_or(Complex::ZERO, |piece| piece.point(piece.interval[1]));

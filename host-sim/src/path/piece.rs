@@ -22,6 +22,8 @@ pub struct PathPiece {
     pub offset: f64,
     /// V in mm/s.
     pub feed: f64,
+    /// The same as the job has it, whatever a plan makes of it.
+    pub wish: f64,
     /// The turn of the centre's way into it in radians, positive anticlockwise, where that is a corner.
     pub start_corner: Option<f64>,
     /// The turn of the centre's way behind it, where that is a corner.
@@ -44,6 +46,7 @@ impl PathPiece {
             interval,
             offset,
             feed,
+            wish: feed,
             start_corner: None,
             end_corner: None,
             start: None,

@@ -1,5 +1,7 @@
 //! What every place of a course bears by itself: the largest speed at which it can be passed at all, and what says so.
 
+use std::fmt;
+
 use serde::Serialize;
 
 use super::course::{Course, Place};
@@ -23,6 +25,22 @@ pub enum Reason {
     Corner(usize),
     /// A rest.
     Rest,
+}
+
+impl fmt::Display for Reason {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        const NAMES: [&str; 2] = ["x", "y"];
+        let name = |axis: usize| NAMES.get(axis).copied().unwrap_or("?");
+        match *self {
+            Self::Feed => f.write_str("the job's feed"),
+            Self::Velocity(axis) => write!(f, "velocity of {}", name(axis)),
+            Self::Acceleration(axis) => write!(f, "acceleration of {}", name(axis)),
+            Self::Centripetal => f.write_str("acceleration across the path"),
+            Self::Jerk(axis) => write!(f, "jerk of {}", name(axis)),
+            Self::Corner(axis) => write!(f, "corner step of {}", name(axis)),
+            Self::Rest => f.write_str("rest"),
+        }
+    }
 }
 
 /// A largest speed and its reason.

@@ -46,7 +46,8 @@ pub struct Course {
 impl Course {
     /// The way of a path, in steps of at most about `step` mm and at least sixteen a piece.
     pub fn new(path: &Path, step: f64) -> Self {
-        let rest = path.header.rest.then_some(0.0);
+        // A plan begins and ends at rest by itself.
+        let rest = (path.header.rest || path.is_planned()).then_some(0.0);
         let even = |_: usize, piece: &PathPiece| {
             let count = (piece.centre_length() / step).ceil().clamp(16.0, 1e6) as u32;
             (0..=count).map(|k| f64::from(k) / f64::from(count)).collect()
@@ -140,7 +141,7 @@ fn place(piece: &PathPiece, weight: f64, xi: f64) -> Place {
         stretch,
         stretching,
         // Equation (20): V_d = V ((1 - w) |1 + kappa d| + w).
-        feed: piece.feed * ((1.0 - weight) * stretch + weight),
+        feed: piece.wish * ((1.0 - weight) * stretch + weight),
         is_corner: false,
         is_rest: false,
     }

@@ -1,5 +1,7 @@
 //! The plan of a path: speeds at places, within limits, and the profiles that make them.
 
+use std::collections::BTreeMap;
+
 use super::bound::{self, Allowed};
 use super::caps::{Cap, Reason, caps};
 use super::course::Course;
@@ -47,6 +49,22 @@ pub struct Plan {
 
 /// The part of an axis' acceleration and jerk that a hold adds to what the plan asks for, since the plan may ask for all of it.
 const HOLD: f64 = 0.25;
+
+impl Plan {
+    /// How long each reason limits the speed, in s; the longest first.
+    pub fn shares(&self) -> Vec<(Reason, f64)> {
+        let mut shares: BTreeMap<Reason, f64> = BTreeMap::new();
+        for (k, place) in self.course.places.iter().enumerate().skip(1) {
+            let sum = self.speed[k] + self.speed[k - 1];
+            if place.step > 0.0 && sum > 0.0 {
+                *shares.entry(self.reason[k]).or_default() += 2.0 * place.step / sum;
+            }
+        }
+        let mut shares: Vec<(Reason, f64)> = shares.into_iter().collect();
+        shares.sort_by(|a, b| b.1.total_cmp(&a.1));
+        shares
+    }
+}
 
 /// How a path goes on from piece to piece, and how it begins and ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
