@@ -19,6 +19,9 @@ pub struct Planning {
     /// the table [path] of the machine's file may say it too
     #[arg(long, value_name = "ERROR", allow_negative_numbers = true)]
     contour_error: Option<f64>,
+    /// Keep to the job's own reductions of the feed at corners besides
+    #[arg(long)]
+    keep_reductions: bool,
     /// Leave the jerks of the machine out
     #[arg(long)]
     no_jerk: bool,
@@ -79,6 +82,7 @@ impl Planning {
                 Mode::ExactPath => Rests::InCorners,
                 Mode::ExactStop => Rests::AtNodes,
             },
+            reductions: self.keep_reductions,
             ends: [end("--start-feed", self.start_feed)?, end("--end-feed", self.end_feed)?],
         };
         let unplanned = |error: PlanError| {

@@ -57,18 +57,18 @@ const RADIUS: f64 = 20.0;
 const HALVINGS: u32 = 14;
 
 impl Response {
-    /// Asks the plant; `fastest` in mm/s is the largest speed that is of interest.
-    pub fn of(plant: &Plant, budget: f64, fastest: f64) -> Self {
+    /// Asks the plant, up to a speed in mm/s and an acceleration in mm/s^2; what keeps the budget up to there is not limited.
+    pub fn of(plant: &Plant, budget: f64, fastest: f64, steepest: f64) -> Self {
         let corner_step = largest(fastest, |speed| corner_error(plant, speed) <= budget);
-        let speed = largest(fastest, |speed| bend_error(plant, speed) <= budget);
+        let speed = largest((steepest * RADIUS).sqrt(), |speed| bend_error(plant, speed) <= budget);
         Self { corner_step, centripetal: speed * speed / RADIUS }
     }
 }
 
-/// The largest speed up to `most` that does, if lower ones do.
+/// The largest speed up to `most` that does, if lower ones do; infinite where all do.
 fn largest(most: f64, does: impl Fn(f64) -> bool) -> f64 {
     if does(most) {
-        return most;
+        return f64::INFINITY;
     }
     let (mut low, mut high) = (0.0, most);
     for _ in 0..HALVINGS {
@@ -147,32 +147,45 @@ pub fn within_budget(
     budget: f64,
 ) -> Result<Budgeted, BudgetError> {
     /// Attempts, and how near to the budget is near enough.
-    const ATTEMPTS: u32 = 8;
+    const ATTEMPTS: u32 = 10;
+    const SCALED_ALONE: u32 = 2;
     const NEAR: f64 = 0.08;
-    let [x, y] = limits.velocity;
-    let response = Response::of(plant, budget, x.hypot(y).min(limits.feed));
-    let mut scale = 1.0;
+    let (free, plan) = planned(path, limits, manner).map_err(BudgetError::Plan)?;
+    let error = contour_error(&free, plant);
+    let fastest = plan.speed.iter().copied().fold(0.0, f64::max);
+    if error <= budget {
+        return Ok(Budgeted { path: free, plan, limits: *limits, error });
+    }
+    let [ax, ay] = limits.acceleration;
+    let response = Response::of(plant, budget, fastest, ax.hypot(ay));
+    let (mut scale, mut gentle) = (1.0, 1.0);
     let mut best: Option<Budgeted> = None;
     let mut least = f64::INFINITY;
-    for _ in 0..ATTEMPTS {
+    for attempt in 0..ATTEMPTS {
         let tried = Limits {
             corner_step: limits.corner_step.map(|step| step.min(response.corner_step * scale)),
             centripetal: limits.centripetal.min(response.centripetal * scale),
+            acceleration: limits.acceleration.map(|a| a * gentle),
+            jerk: limits.jerk.map(|j| j * gentle),
             ..*limits
         };
         let (path, plan) = planned(path, &tried, manner).map_err(BudgetError::Plan)?;
         let error = contour_error(&path, plant);
         least = least.min(error);
         let found = Budgeted { path, plan, limits: tried, error };
-        let is_limited = tried.corner_step != limits.corner_step || tried.centripetal < limits.centripetal;
         if error <= budget && best.as_ref().is_none_or(|best| found.plan.time < best.plan.time) {
             best = Some(found);
         }
-        if error <= budget && (error >= budget * (1.0 - NEAR) || !is_limited) {
+        if error <= budget && error >= budget * (1.0 - NEAR) {
             break;
         }
-        // The error grows about as the steps and accelerations do; half of the budget's own margin stays.
-        scale *= (budget * (1.0 - 0.5 * NEAR) / error).clamp(0.2, 3.0);
+        // The error grows about as the steps and accelerations do; half of the budget's own margin stays. Braking into a corner has a part in
+        // it that no corner step tells.
+        let ratio = budget * (1.0 - 0.5 * NEAR) / error;
+        scale *= ratio.clamp(0.2, 3.0);
+        if attempt >= SCALED_ALONE {
+            gentle *= ratio.clamp(0.5, 1.0);
+        }
     }
     best.ok_or(BudgetError::Never { error: least })
 }

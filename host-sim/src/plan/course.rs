@@ -63,6 +63,9 @@ impl Course {
         parts: impl FnMut(usize, &PathPiece) -> Vec<f64>,
     ) -> Self {
         let mut places = places(pieces, weight, parts);
+        if manner.reductions {
+            reduce(&mut places, pieces);
+        }
         for k in 1..places.len() {
             let (before, after) = (places[k - 1].piece, places[k].piece);
             let is_node = before != after && pieces[before].segment != pieces[after].segment;
@@ -79,6 +82,22 @@ impl Course {
     /// Its length in mm.
     pub fn length(&self) -> f64 {
         self.places.iter().map(|place| place.step).sum()
+    }
+}
+
+/// Lowers the feed at corners to what the job's own ramps leave of it.
+fn reduce(places: &mut [Place], pieces: &[PathPiece]) {
+    let last = places.len().saturating_sub(1);
+    for k in 0..places.len() {
+        let number = places[k].piece;
+        let is_first = k == 0 || places[k - 1].piece != number;
+        let is_last = k == last || places[k + 1].piece != number;
+        let ramp = match (is_first, is_last) {
+            (true, _) => pieces[number].start,
+            (_, true) => pieces[number].end,
+            _ => None,
+        };
+        places[k].feed *= ramp.map_or(1.0, |ramp| ramp.factor);
     }
 }
 

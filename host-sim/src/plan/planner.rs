@@ -73,11 +73,13 @@ pub struct Manner {
     pub rests: Rests,
     /// The speeds of the centre at which it begins and ends, in mm/s; none where that is free.
     pub ends: [Option<f64>; 2],
+    /// Whether the job's own reductions of the feed at corners hold too.
+    pub reductions: bool,
 }
 
 impl Manner {
     /// From rest to rest, and through all corners at what they bear.
-    pub const USUAL: Self = Self { rests: Rests::Never, ends: [Some(0.0); 2] };
+    pub const USUAL: Self = Self { rests: Rests::Never, ends: [Some(0.0); 2], reductions: false };
 }
 
 /// Where a path rests on the way, as RS-274 has it.
