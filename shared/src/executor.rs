@@ -48,6 +48,7 @@ pub struct Place<T> {
 
 /// The state of the walk, from tick to tick, of a machine with `F` axes beside its plane.
 #[derive(Clone, Copy, Debug)]
+#[repr(C)]
 pub struct Executor<T, const F: usize = 1> {
     tick: T,
     order: Order,
@@ -60,7 +61,6 @@ pub struct Executor<T, const F: usize = 1> {
     percent: u8,
     wanted: Target<T>,
     single_block: bool,
-    active: Option<ActivePiece<T, F>>,
     /// Whether the next tick moves by `time` again, as long as the way is ample; otherwise it has to look at everything.
     steady: bool,
     /// The path time of a tick at a steady pace, in s.
@@ -76,6 +76,7 @@ pub struct Executor<T, const F: usize = 1> {
     point: Complex<T>,
     setpoint: Setpoint<F>,
     spare: T,
+    active: Option<ActivePiece<T, F>>,
 }
 
 impl<T: Real> Executor<T> {

@@ -41,7 +41,7 @@ const WATCH_STAGES: [&str; 2] = ["safety", "control"];
 
 /// Instructions of the whole interrupt with two servo axes at order 1, at a node too, at most: as many as three step axes may take at
 /// rest.
-const INTERRUPT_BAR: u32 = 1_500;
+const INTERRUPT_BAR: u32 = 1_525;
 
 /// The same along a profile, where the time is sought by Newton's method: as order 2 takes along a ramp, it may take more.
 const PROFILE_BAR: u32 = 1_650;

@@ -11,6 +11,7 @@
 //! | [`law`] | the profiles of pieces that make such speeds |
 //! | [`planner`] | all of that for a path |
 //! | [`budget`] | a plan that keeps a plant's contour error within a budget |
+//! | [`streamed`] | the same for a path of any length, in the same memory |
 //! | [`demand`] | what a simulated run asks of a machine |
 
 pub mod bound;
@@ -23,10 +24,12 @@ pub mod law;
 pub mod limits;
 pub mod planner;
 mod smooth;
+pub mod streamed;
 
 pub use bound::{Bound, bound};
 pub use budget::{BudgetError, Budgeted, Response, within_budget};
 pub use course::Course;
 pub use demand::{Demand, Recorder};
 pub use limits::Limits;
+pub use streamed::Streamed;
 pub use planner::{Manner, Plan, PlanError, Rests, plan, planned};

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::bound::{self, Allowed};
 use super::caps::{Cap, Reason, caps};
-use super::course::Course;
+use super::course::{Course, Place};
 use super::grid;
 use super::law::{self, Law, Parts, Tolerance};
 use super::limits::{JERK_WINDOW, Limits};
@@ -130,6 +130,11 @@ pub fn planned(path: &Path, limits: &Limits, manner: &Manner) -> Result<(Path, P
 
 /// Plans pieces within limits. Errors: as [`planned`].
 pub fn plan(pieces: &[PathPiece], weight: f64, limits: &Limits, manner: &Manner) -> Result<Plan, PlanError> {
+    check_ends(best(pieces, weight, limits, manner), manner.ends)
+}
+
+/// Plans pieces as near to the speeds at their ends as can be.
+pub(super) fn best(pieces: &[PathPiece], weight: f64, limits: &Limits, manner: &Manner) -> Plan {
     let used = limits.with_margin(USED);
     let course = grid::places(pieces, weight, &used, manner);
     let lengths: Vec<f64> = pieces.iter().map(PathPiece::segment_length).collect();
@@ -140,14 +145,14 @@ pub fn plan(pieces: &[PathPiece], weight: f64, limits: &Limits, manner: &Manner)
         round += 1;
         let over = draft.over(&used, &lengths);
         if round >= ROUNDS || over.iter().all(|&over| over <= 1.0) {
-            let plan = draft.finish(pieces, &used, over.iter().copied().fold(1.0, f64::max));
-            return check_ends(plan, manner.ends);
+            return draft.finish(pieces, &used, over.iter().copied().fold(1.0, f64::max));
         }
         lessen(&mut scale, &over);
     }
 }
 
-fn check_ends(plan: Plan, ends: [Option<f64>; 2]) -> Result<Plan, PlanError> {
+/// Whether the ends are as fast as they should be.
+pub(super) fn check_ends(plan: Plan, ends: [Option<f64>; 2]) -> Result<Plan, PlanError> {
     /// The part of an end's speed that may be missing.
     const MISSING: f64 = 2e-3;
     let short = |asked: Option<f64>, most: Option<&f64>| {
@@ -173,23 +178,13 @@ struct Draft {
 impl Draft {
     fn new(course: Course, limits: &Limits, scale: &[f64]) -> Self {
         let caps = caps(&course, limits, scale);
-        let allowed: Vec<Allowed> = course
-            .places
-            .iter()
-            .zip(&caps)
-            .zip(scale)
-            .map(|((place, cap), &scale)| {
-                let mut place = *place;
-                place.feed = cap.speed;
-                Allowed::at(&place, &limits.with_margin([1.0, scale, 1.0]))
-            })
-            .collect();
+        let allowed = allowed(&course, &caps, limits, scale);
         let found = bound::within(&course, limits, &allowed);
         let states = if limits.jerk.iter().all(|jerk| jerk.is_infinite()) {
             smooth::as_it_is(&course, &found.speed)
         } else {
             let jerk = along(&course, &found.speed, limits, scale);
-            smooth::smooth(&course, &allowed, &found.speed, &jerk)
+            smooth::smooth(&course, &caps, &allowed, &found.speed, &jerk)
         };
         Self { course, caps, states }
     }
@@ -249,7 +244,7 @@ impl Draft {
 
     /// The accelerations of both axes in front of and behind each place.
     fn accelerations(&self) -> Vec<[[f64; 2]; 2]> {
-        let of = |(place, state): (&super::course::Place, &State)| {
+        let of = |(place, state): (&Place, &State)| {
             state.acceleration.map(|along| {
                 let a =
                     place.direction * along + place.direction.left() * (place.curvature * state.speed * state.speed);
@@ -272,7 +267,7 @@ impl Draft {
         }
         let mut from = 0;
         for k in 1..places.len() {
-            if places[k].is_corner {
+            if smooth::parts(places, k) {
                 from = k;
                 continue;
             }
@@ -343,6 +338,15 @@ fn push(all: &mut Vec<PathPiece>, piece: &PathPiece, interval: [f64; 2], law: &L
     part.start_corner = piece.start_corner.filter(|_| whole[0]);
     part.end_corner = piece.end_corner.filter(|_| whole[1]);
     all.push(part);
+}
+
+/// What places bear below their caps.
+pub(super) fn allowed(course: &Course, caps: &[Cap], limits: &Limits, scale: &[f64]) -> Vec<Allowed> {
+    let of = |((place, cap), &scale): ((&Place, &Cap), &f64)| {
+        let place = Place { feed: cap.speed, ..*place };
+        Allowed::at(&place, &limits.with_margin([1.0, scale, 1.0]))
+    };
+    course.places.iter().zip(caps).zip(scale).map(of).collect()
 }
 
 /// The jerk along the way that the axes leave at each place beside what the bend takes.

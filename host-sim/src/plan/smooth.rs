@@ -6,7 +6,8 @@
 //! largest such profile below x is the convex hull of x + D, less D. Both are linear in the number of places.
 
 use super::bound::Allowed;
-use super::course::Course;
+use super::caps::{Cap, Reason};
+use super::course::{Course, Place};
 
 /// The state at one place.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -66,7 +67,7 @@ fn climb([v, a]: [f64; 2], step: f64, jerk: f64, top: f64) -> [f64; 2] {
 }
 
 /// Lowers `speed` so that the acceleration along the way changes by `jerk` at most, which holds on the way to each place.
-pub(super) fn smooth(course: &Course, allowed: &[Allowed], speed: &[f64], jerk: &[f64]) -> Vec<State> {
+pub(super) fn smooth(course: &Course, caps: &[Cap], allowed: &[Allowed], speed: &[f64], jerk: &[f64]) -> Vec<State> {
     let places = &course.places;
     let count = places.len();
     let mut lowered = speed.to_vec();
@@ -76,7 +77,7 @@ pub(super) fn smooth(course: &Course, allowed: &[Allowed], speed: &[f64], jerk: 
     for k in 1..count {
         let step = places[k].step;
         if step == 0.0 {
-            if places[k].is_corner || places[k].is_rest {
+            if places[k].is_rest {
                 a = 0.0;
             }
             lowered[k] = lowered[k].min(lowered[k - 1]);
@@ -97,7 +98,7 @@ pub(super) fn smooth(course: &Course, allowed: &[Allowed], speed: &[f64], jerk: 
     for k in (1..count).rev() {
         let step = places[k].step;
         if step == 0.0 {
-            if places[k].is_corner || places[k].is_rest {
+            if places[k].is_rest {
                 a = 0.0;
             }
             if lowered[k] < lowered[k - 1] {
@@ -121,16 +122,39 @@ pub(super) fn smooth(course: &Course, allowed: &[Allowed], speed: &[f64], jerk: 
             (lowered[k], known[k]) = (lowered[k - 1], known[k - 1]);
         }
     }
-    round_peaks(course, &lowered, &known, jerk)
+    // A corner that is passed as fast as it can be parts the motion: its velocity steps, and its acceleration may too.
+    let at_corner = |k: usize| {
+        places[k].is_rest
+            || (parts(places, k)
+                && matches!(caps[k].reason, Reason::Corner(_))
+                && lowered[k] >= caps[k].speed * (1.0 - 1e-9))
+    };
+    let parted: Vec<bool> = (0..count).map(at_corner).collect();
+    round_peaks(course, &lowered, &known, jerk, &parted)
+}
+
+/// Whether the way turns so sharply in front of place `k`, or rests, that the step of the velocity is what counts there.
+pub(super) fn parts(places: &[Place], k: usize) -> bool {
+    /// The sine of a turn from which on that is so: below it a chain of lines is run like a curve.
+    const TURN: f64 = 0.1;
+    let turn = |before: &Place| places[k].direction.cross(before.direction).abs();
+    let before = k.checked_sub(1).and_then(|before| places.get(before));
+    places[k].is_rest || (places[k].is_corner && before.is_some_and(|before| turn(before) > TURN))
 }
 
 /// The convex hull of x + D between corners, less D.
-fn round_peaks(course: &Course, speed: &[f64], known: &[Option<f64>], jerk: &[f64]) -> Vec<State> {
+fn round_peaks(
+    course: &Course,
+    speed: &[f64],
+    known: &[Option<f64>],
+    jerk: &[f64],
+    parted: &[bool],
+) -> Vec<State> {
     let places = &course.places;
     let mut states: Vec<State> = speed.iter().map(|&speed| State { speed, acceleration: [0.0; 2] }).collect();
     let mut from = 0;
     for k in 1..=places.len() {
-        if k == places.len() || (places[k].is_corner || places[k].is_rest) {
+        if k == places.len() || parted[k] {
             hull(course, &mut states, known, jerk, from, k);
             from = k;
         }

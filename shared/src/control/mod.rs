@@ -78,7 +78,11 @@ enum Activity {
 
 /// The state of everything that moves. `AXES` is how many connectors the board has.
 #[derive(Clone, Debug)]
+#[repr(C)]
 pub struct Control<const AXES: usize, const PORTS: usize, const SLOTS: usize> {
+    // What every tick reads comes first, within reach of one load each.
+    executor: Executor<f32>,
+    axes: Axes<AXES, PORTS, SLOTS>,
     wiring: Wiring,
     config: SafetyConfig,
     enables: u8,
@@ -86,11 +90,9 @@ pub struct Control<const AXES: usize, const PORTS: usize, const SLOTS: usize> {
     plan: HomingPlan,
     safety: Safety,
     powered: bool,
-    executor: Executor<f32>,
     activity: Activity,
     /// What the path's coordinates need to become the machine's.
     offset: Position,
-    axes: Axes<AXES, PORTS, SLOTS>,
     /// An axis that could not keep up in the tick before, or that left its travel, which the checks before motion should not have let it.
     late: Option<Fault>,
     path: PathEnd,
