@@ -67,14 +67,3 @@ pub fn picture(job: &Job, path: &Path, samples: &[Sample]) -> Result<String, Rep
 pub fn offset_picture(part: &Part, offset: &Offset, undercuts: &[Undercut]) -> Result<String, ReportError> {
     Ok(figures::trimming(part, offset, undercuts)?.file())
 }
-
-/// STUB
-pub fn plan(
-    _: &Job,
-    _: &Path,
-    _: &Path,
-    _: &crate::plan::Plan,
-    _: &crate::plan::Limits,
-) -> Result<String, ReportError> {
-    Ok(String::new())
-}
