@@ -121,6 +121,35 @@ impl Canvas<'_> {
         drawn(self.backend.draw_rect(place(from), place(to), &colour.to_rgba(), true))
     }
 
+    /// Lines that rise to the right, from `left` to `right`, under `top` and over `bottom`. They go on where neighbouring areas meet.
+    pub fn hatch(
+        &mut self,
+        left: f64,
+        right: f64,
+        bottom: f64,
+        top: impl Fn(f64) -> f64,
+        stroke: Stroke,
+    ) -> Result<(), ReportError> {
+        /// Between two lines, along x.
+        const SPACING: f64 = 6.0;
+        const STEP: f64 = 0.5;
+        let steps = ((right - left) / STEP).ceil().max(1.0) as u32;
+        let columns: Vec<Point> =
+            (0..=steps).map(|k| left + (right - left) * f64::from(k) / f64::from(steps)).map(|x| (x, top(x))).collect();
+        let highest = columns.iter().map(|column| column.1).fold(bottom, f64::min);
+        let (first, last) = (((left + highest) / SPACING).ceil() as i32, ((right + bottom) / SPACING).floor() as i32);
+        for number in first..=last {
+            let sum = f64::from(number) * SPACING;
+            let is_inside = |&(x, top): &Point| (top..=bottom).contains(&(sum - x));
+            for run in columns.chunk_by(|a, b| is_inside(a) == is_inside(b)) {
+                if let ([from, .., to], true) = (run, run.first().is_some_and(is_inside)) {
+                    self.line([(from.0, sum - from.0), (to.0, sum - to.0)], stroke)?;
+                }
+            }
+        }
+        Ok(())
+    }
+
     /// A dot.
     pub fn dot(&mut self, at: Point, radius: f64, colour: RGBColor) -> Result<(), ReportError> {
         drawn(self.backend.draw_circle(place(at), (radius * PARTS).round() as u32, &colour.to_rgba(), true))
@@ -166,10 +195,7 @@ impl Canvas<'_> {
 
     /// A row of marks with what they mean, from `at` on, or up to `at` where it is anchored right.
     pub fn key(&mut self, at: Point, anchor: Anchor, entries: &[(Mark, &str)]) -> Result<(), ReportError> {
-        const SWATCH: f64 = 26.0;
-        const GAP: f64 = 18.0;
-        let width = |text: &str| SWATCH + 6.0 + text.chars().count() as f64 * 0.6 * TEXT + GAP;
-        let all: f64 = entries.iter().map(|(_, text)| width(text)).sum::<f64>() - GAP;
+        let all: f64 = entries.iter().map(|(_, text)| key_width(text)).sum::<f64>() - GAP;
         let mut x = match anchor {
             Anchor::Left => at.0,
             Anchor::Middle => at.0 - 0.5 * all,
@@ -183,10 +209,15 @@ impl Canvas<'_> {
                 Mark::Area(colour) => {
                     self.rectangle((x + 5.0, at.1 - 6.0), (x + SWATCH - 5.0, at.1 + 6.0), colour)?;
                 }
+                Mark::Hatched(colour, lines) => {
+                    let (left, right) = (x + 5.0, x + SWATCH - 5.0);
+                    self.rectangle((left, at.1 - 6.0), (right, at.1 + 6.0), colour)?;
+                    self.hatch(left, right, at.1 + 6.0, |_| at.1 - 6.0, lines)?;
+                }
                 Mark::Ring(colour, hole) => self.ring((x + 0.5 * SWATCH, at.1), 5.5, colour, hole)?,
             }
             self.text((x + SWATCH + 6.0, at.1), text, Anchor::Left)?;
-            x += width(text);
+            x += key_width(text);
         }
         Ok(())
     }
@@ -205,6 +236,34 @@ pub enum Mark {
     Circle(Stroke),
     /// An area.
     Area(RGBColor),
+    /// An area and the lines over it.
+    Hatched(RGBColor, Stroke),
+}
+
+/// The mark of an entry of a key, and the gap behind its text.
+const SWATCH: f64 = 26.0;
+const GAP: f64 = 18.0;
+
+fn key_width(text: &str) -> f64 {
+    SWATCH + 6.0 + text.chars().count() as f64 * 0.6 * TEXT + GAP
+}
+
+/// The entries of a key in rows that are no wider than `width`.
+pub fn key_rows<'a>(entries: &[(Mark, &'a str)], width: f64) -> Vec<Vec<(Mark, &'a str)>> {
+    let mut rows: Vec<Vec<(Mark, &str)>> = Vec::new();
+    let mut taken = f64::INFINITY;
+    for &(mark, text) in entries {
+        let wide = key_width(text);
+        if taken + wide - GAP > width {
+            rows.push(Vec::new());
+            taken = 0.0;
+        }
+        if let Some(row) = rows.last_mut() {
+            row.push((mark, text));
+        }
+        taken += wide;
+    }
+    rows
 }
 
 fn place((x, y): Point) -> (i32, i32) {

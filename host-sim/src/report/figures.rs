@@ -285,7 +285,12 @@ pub fn milliseconds(ticks: u64) -> String {
 
 impl View {
     /// Axes over the part.
-    fn axes_over(&self, canvas: &mut Canvas<'_>, units: Units, outlines: &Outlines) -> Result<(), ReportError> {
+    pub(super) fn axes_over(
+        &self,
+        canvas: &mut Canvas<'_>,
+        units: Units,
+        outlines: &Outlines,
+    ) -> Result<(), ReportError> {
         match outlines.material {
             Material::Inside => self.area(canvas, &outlines.contour, GROUND)?,
             Material::Outside => {

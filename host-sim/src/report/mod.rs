@@ -2,20 +2,25 @@
 //!
 //! | module | what |
 //! | --- | --- |
-//! | `simulation`, `reproduction` | the two reports: what stands in which order, and the sentences between |
-//! | `figures` | one function for each kind of picture |
+//! | `simulation`, `plan`, `reproduction`, `feed_correction` | the reports: what stands in which order, and the sentences between |
+//! | `figures`, `plan_figures` | one function for each kind of picture |
+//! | `limited`, `causes` | what limits a plan and where; how that is named and coloured |
 //! | `tables` | published tables beside what came out here |
 //! | `plane`, `chart` | coordinates: the plane with one scale on both axes; strips over one time axis |
 //! | `geometry`, `leftover`, `series` | the points to draw: offsets and contact points; what the tool leaves; thinned series and round ticks |
 //! | `canvas`, `page`, `style` | marks as SVG, text as HTML, colours and sizes |
 
 mod canvas;
+mod causes;
 mod chart;
 mod feed_correction;
 mod figures;
 mod geometry;
 mod leftover;
+mod limited;
 mod page;
+mod plan;
+mod plan_figures;
 mod plane;
 mod reproduction;
 mod series;
@@ -31,6 +36,7 @@ use crate::path::Path;
 use crate::simulate::Sample;
 
 pub use feed_correction::feed_correction;
+pub use plan::plan;
 pub use reproduction::reproduction;
 pub use simulation::simulation;
 

@@ -129,12 +129,12 @@ impl View {
 
     /// A line through `places`, without those that are too near to each other to be seen.
     pub fn line(&self, canvas: &mut Canvas<'_>, places: &[Place], stroke: Stroke) -> Result<(), ReportError> {
-        canvas.line(self.thin(places), stroke)
+        canvas.line(self.thinned(places), stroke)
     }
 
     /// The area within `places`.
     pub fn area(&self, canvas: &mut Canvas<'_>, places: &[Place], colour: RGBColor) -> Result<(), ReportError> {
-        canvas.area(self.thin(places), colour)
+        canvas.area(self.thinned(places), colour)
     }
 
     /// The whole plot.
@@ -142,7 +142,8 @@ impl View {
         canvas.rectangle((LEFT, TOP), (WIDTH - RIGHT, TOP + self.plot.1), colour)
     }
 
-    fn thin(&self, places: &[Place]) -> Vec<Point> {
+    /// Places on the sheet, without those that are too near to each other to be seen.
+    pub fn thinned(&self, places: &[Place]) -> Vec<Point> {
         let mut kept: Vec<Point> = Vec::new();
         for (number, &place) in places.iter().enumerate() {
             let point = self.at(place);
@@ -155,25 +156,31 @@ impl View {
 
     /// A line in the colours of the values along it, with a dark edge that keeps its light end visible on white.
     pub fn coloured_line(&self, canvas: &mut Canvas<'_>, way: &[(Place, f64)], most: f64) -> Result<(), ReportError> {
+        let shade = |value: f64| viridis((value / most * SHADES).round() / SHADES);
+        let way: Vec<(Place, RGBColor)> = way.iter().map(|&(place, value)| (place, shade(value))).collect();
+        self.line_in_colours(canvas, &way)
+    }
+
+    /// A line whose every part has the colour of its first place, with a dark edge.
+    pub fn line_in_colours(&self, canvas: &mut Canvas<'_>, way: &[(Place, RGBColor)]) -> Result<(), ReportError> {
         let places: Vec<Place> = way.iter().map(|step| step.0).collect();
-        canvas.line(self.thin(&places), Stroke::new(INK, 6.4))?;
-        let shade = |value: f64| (value / most * SHADES).round();
+        canvas.line(self.thinned(&places), Stroke::new(INK, 6.4))?;
         let mut part: Vec<Point> = Vec::new();
-        let mut shown = f64::NAN;
-        for (number, &(place, value)) in way.iter().enumerate() {
+        let mut shown = INK;
+        for (number, &(place, colour)) in way.iter().enumerate() {
             let point = self.at(place);
             let far = part.last().is_none_or(|&last| distance(last, point) > FINE);
             if !far && number + 1 < way.len() {
                 continue;
             }
             if part.is_empty() {
-                shown = shade(value);
+                shown = colour;
             }
             part.push(point);
-            if shade(value) != shown || number + 1 == way.len() {
-                canvas.line(part.iter().copied(), Stroke::new(viridis(shown / SHADES), 4.8))?;
+            if colour != shown || number + 1 == way.len() {
+                canvas.line(part.iter().copied(), Stroke::new(shown, 4.8))?;
                 part = vec![point];
-                shown = shade(value);
+                shown = colour;
             }
         }
         Ok(())
