@@ -276,3 +276,61 @@ fn floor(speed: &[f64], ways: &[f64], [from, low, to]: [usize; 3]) -> usize {
     let off = |k: usize| (ways[k] - middle).abs();
     (first..=last).min_by(|&a, &b| off(a).total_cmp(&off(b))).unwrap_or(low)
 }
+
+#[cfg(test)]
+mod tests {
+    use shared::piece::Order;
+
+    use super::super::plan::tests::{SQUARE, limits, planned};
+    use super::*;
+
+    /// Time and way are each shared out without a rest, and so is the time that is lost.
+    #[test]
+    fn shares_sum_to_all() {
+        for text in [SQUARE, include_str!("../../../examples/fan.toml"), include_str!("../../../examples/bracket.toml")]
+        {
+            let (_, path, plan) = planned(text, Order::First);
+            let limited = Limited::new(&plan, &limits()).unwrap();
+            let sum = |of: fn(&Share) -> f64| limited.shares.iter().map(of).sum::<f64>();
+            // Rounding of some thousand additions.
+            assert!((sum(|share| share.time) / plan.time - 1.0).abs() < 1e-9);
+            assert!((sum(|share| share.way) / path.centre_length() - 1.0).abs() < 1e-6, "Simpson's rule");
+            assert!((sum(|share| share.lost) - (plan.time - limited.own_time)).abs() < 1e-9);
+        }
+    }
+
+    /// Nothing on the sides of a square is slower than its corners, which let x step by what the limits say; all four cost alike.
+    #[test]
+    fn the_slowest_places_of_a_square_are_its_corners() {
+        let (_, _, plan) = planned(SQUARE, Order::First);
+        let limited = Limited::new(&plan, &limits()).unwrap();
+        let numbered = limited.numbered();
+        assert_eq!(numbered.len(), 4);
+        for (corner, (_, slow)) in [(20.0, 0.0), (20.0, 20.0), (0.0, 20.0), (0.0, 0.0)].into_iter().zip(&numbered) {
+            assert!((limited.points[slow.at] - Place::new(corner.0, corner.1)).norm() < 1e-9);
+            assert!(matches!(limited.causes[slow.at], Cause::Corner(_)));
+            assert!((plan.speed[slow.at] / limits().corner_step[0] - 1.0).abs() < 1e-2);
+            assert!((slow.lost / numbered[0].1.lost - 1.0).abs() < 0.05);
+        }
+    }
+
+    /// By hand: a start and an end are dips as well, a ripple is none.
+    #[test]
+    fn dips_are_deeper_than_a_ripple() {
+        assert_eq!(dips(&[0.0, 5.0, 9.0, 8.95, 9.0, 4.0, 7.0, 0.0]), [[0, 0, 2], [2, 5, 6], [6, 7, 7]]);
+        assert_eq!(dips(&[3.0; 4]), [[0; 3]; 0]);
+    }
+
+    /// The middle of a floor that is longer than 1 mm, the lowest place of a short one.
+    #[test]
+    fn a_long_floor_is_named_by_its_middle() {
+        let speed = [9.0, 5.001, 5.0, 5.001, 5.0015, 9.0];
+        let at = |width: f64| {
+            let ways: Vec<f64> = (0..6).map(|k| f64::from(k) * width).collect();
+            floor(&speed, &ways, [0, 2, 5])
+        };
+        assert_eq!(at(0.1), 2);
+        let ways = [0.0, 1.0, 2.0, 6.0, 11.0, 12.0];
+        assert_eq!(floor(&speed, &ways, [0, 2, 5]), 3);
+    }
+}

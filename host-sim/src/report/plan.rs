@@ -252,3 +252,79 @@ fn words(units: Units, plan: &Plan, limits: &Limits, cause: Cause, at: usize) ->
         }
     }
 }
+
+#[cfg(test)]
+pub(super) mod tests {
+    use shared::piece::Order;
+
+    use super::super::page::tests::{assert_balanced, assert_self_contained};
+    use super::*;
+    use crate::plan::{Manner, planned as plan_of};
+
+    /// 20 mm a side, from the middle of one on.
+    pub const SQUARE: &str = "units = \"mm\"\nclosed = true\n[feed]\nrate = 3000.0\n\
+        [[segment]]\nline = { start = [10.0, 0.0], to = [20.0, 0.0] }\n[[segment]]\nline = { to = [20.0, 20.0] }\n\
+        [[segment]]\nline = { to = [0.0, 20.0] }\n[[segment]]\nline = { to = [0.0, 0.0] }\n[[segment]]\nline = { to = [10.0, 0.0] }\n";
+
+    /// A common router's.
+    pub fn limits() -> Limits {
+        Limits {
+            velocity: [80.0; 2],
+            acceleration: [400.0; 2],
+            jerk: [8000.0; 2],
+            corner_step: [3.125; 2],
+            feed: f64::INFINITY,
+            centripetal: f64::INFINITY,
+        }
+    }
+
+    /// A job, its path before it is planned, and its plan.
+    pub fn planned(text: &str, order: Order) -> (Job, Path, Plan) {
+        let job = Job::from_toml("part <1>.toml", text).unwrap();
+        let path = Path::new(&job, order).unwrap();
+        let (_, plan) = plan_of(&path, &limits(), &Manner::USUAL).unwrap();
+        (job, path, plan)
+    }
+
+    /// A legend names what occurs and nothing else; names from a person are escaped.
+    #[test]
+    fn pages_name_what_occurs() {
+        let (job, path, found) = planned(include_str!("../../../examples/bracket.toml"), Order::First);
+        let html = plan(&job, &path, &found, &limits()).unwrap();
+        assert_balanced(&html);
+        assert_self_contained(&html);
+        for words in ["part &lt;1&gt;.toml", "job\u{2019}s feed", "x jerk", "y jerk", "corner step of x", "node 5"] {
+            assert!(html.contains(words), "{words}");
+        }
+        for words in ["x velocity", "acceleration across the path", "machine\u{2019}s feed"] {
+            assert!(!html.contains(words), "{words}");
+        }
+        assert!(html.contains("mm/s, at a turn of 90.0\u{b0}"));
+    }
+
+    /// The pieces before and after planning are the same curves, so either path draws the same page, each time.
+    #[test]
+    fn pages_do_not_depend_on_which_path_is_given() {
+        let (job, path, found) = planned(SQUARE, Order::First);
+        let (with_profiles, _) = plan_of(&path, &limits(), &Manner::USUAL).unwrap();
+        let html = plan(&job, &path, &found, &limits()).unwrap();
+        assert_eq!(html, plan(&job, &with_profiles, &found, &limits()).unwrap());
+    }
+
+    /// A feed that the machine does not have is the machine's, not the job's.
+    #[test]
+    fn the_machines_feed_is_told_from_the_jobs() {
+        let (job, path, _) = planned(SQUARE, Order::First);
+        let slow = Limits { feed: 20.0, ..limits() };
+        let (_, found) = plan_of(&path, &slow, &Manner::USUAL).unwrap();
+        let html = plan(&job, &path, &found, &slow).unwrap();
+        assert!(html.contains("machine\u{2019}s feed") && !html.contains(">job\u{2019}s feed"));
+    }
+
+    #[test]
+    fn nothing_to_draw_is_said() {
+        let (job, path, mut found) = planned(SQUARE, Order::First);
+        found.time = 0.0;
+        assert_eq!(plan(&job, &path, &found, &limits()), Err(ReportError::NoSamples));
+    }
+}
