@@ -76,7 +76,7 @@ impl PlanVerb {
             bound(&course, limits).time
         });
         if let Some(name) = &self.report {
-            let html = report::plan(&job, &original, path, plan, limits).map_err(|error| failed(name, error))?;
+            let html = report::plan(&job, path, plan, limits).map_err(|error| failed(name, error))?;
             write(name, html.as_bytes())?;
         }
         let mm = job.units.mm();

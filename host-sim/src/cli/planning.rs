@@ -16,7 +16,7 @@ pub struct Planning {
     #[arg(long, value_enum, default_value_t = Mode::Continuous)]
     mode: Mode,
     /// The largest contour error that the drives may make, in the job's units: G64 P. It is that of the plant, or of the built-in mill where none is named;
-    /// the table [path] of the machine's file may say it too
+    /// the table path of the machine's file may say it too
     #[arg(long, value_name = "ERROR", allow_negative_numbers = true)]
     contour_error: Option<f64>,
     /// Keep to the job's own reductions of the feed at corners besides

@@ -130,12 +130,12 @@ mod tests {
 
     const ROUTER: &str = include_str!("../../../examples/machine.toml");
 
-    fn refused(old: &str, new: &str) -> String {
+    fn refused(old: &str, new: &str) -> std::string::String {
         let text = ROUTER.replacen(old, new, 1);
         assert_ne!(text, ROUTER, "{old}");
         let error = from_toml("machine.toml", &text).unwrap_err();
         let (line, column) = error.position.unwrap();
-        let marked: String = text.lines().nth(line - 1).unwrap().chars().skip(column - 1).collect();
+        let marked: std::string::String = text.lines().nth(line - 1).unwrap().chars().skip(column - 1).collect();
         let marked = marked.split('#').next().unwrap().trim_end();
         let message = error.to_string();
         format!("{marked} <- {}", message.splitn(4, ':').nth(3).unwrap().trim())

@@ -22,9 +22,7 @@ pub struct Law {
 impl Law {
     /// Between two feeds with their slopes over a contact length. None where no cubic does it without standing still or turning back.
     pub(super) fn between([p0, a0]: [f64; 2], [p1, a1]: [f64; 2], length: f64) -> Option<Self> {
-        let (mean, bend) = (0.5 * (p0 + p1), (a0 - a1) / 12.0);
-        let root = (mean * mean + 4.0 * bend * length).sqrt();
-        let duration = 2.0 * length / (mean + root);
+        let duration = Self::duration([p0, a0], [p1, a1], length);
         if !(duration.is_finite() && duration > 0.0) {
             return None;
         }
@@ -33,6 +31,12 @@ impl Law {
         let tidy = |feed: f64| if feed.abs() < 1e-9 * (p0 + p1) { 0.0 } else { feed };
         let feeds = [p0, tidy(p0 + a0 * third), tidy(p1 - a1 * third), p1];
         (feeds.iter().all(|&feed| feed >= 0.0) && feeds[1] + feeds[2] > 0.0).then_some(Self { feeds, duration })
+    }
+
+    /// The root of the equation of the text above; not a number where there is none.
+    pub(super) fn duration([p0, a0]: [f64; 2], [p1, a1]: [f64; 2], length: f64) -> f64 {
+        let (mean, bend) = (0.5 * (p0 + p1), (a0 - a1) / 12.0);
+        2.0 * length / (mean + (mean * mean + 4.0 * bend * length).sqrt())
     }
 
     /// Between two feeds at constant slope, whatever the slopes at their ends; between two rests as if from one to the other at

@@ -31,5 +31,5 @@ pub use budget::{BudgetError, Budgeted, Response, within_budget};
 pub use course::Course;
 pub use demand::{Demand, Recorder};
 pub use limits::Limits;
-pub use streamed::Streamed;
 pub use planner::{Manner, Plan, PlanError, Rests, plan, planned};
+pub use streamed::Streamed;

@@ -24,6 +24,9 @@ const ACCELERATION_TOLERANCE: f64 = 4e-3;
 const MIDDLE_SPEED: f64 = 2e-3;
 const MIDDLE_ACCELERATION: f64 = 6e-3;
 
+/// The same of a jerk: where an acceleration turns within a step, its change seems larger than it is.
+const MIDDLE_JERK: f64 = 0.06;
+
 /// What a step without a law counts as: too much.
 const WITHOUT_LAW: f64 = 1.3;
 
@@ -51,6 +54,11 @@ pub struct Plan {
 const HOLD: f64 = 0.25;
 
 impl Plan {
+    /// What a plan uses of limits: what lies between its places, and what a cubic departs by, is in the rest.
+    pub fn used(limits: &Limits) -> Limits {
+        limits.with_margin(USED)
+    }
+
     /// How long each reason limits the speed, in s; the longest first.
     pub fn shares(&self) -> Vec<(Reason, f64)> {
         let mut shares: BTreeMap<Reason, f64> = BTreeMap::new();
@@ -135,7 +143,7 @@ pub fn plan(pieces: &[PathPiece], weight: f64, limits: &Limits, manner: &Manner)
 
 /// Plans pieces as near to the speeds at their ends as can be.
 pub(super) fn best(pieces: &[PathPiece], weight: f64, limits: &Limits, manner: &Manner) -> Plan {
-    let used = limits.with_margin(USED);
+    let used = Plan::used(limits);
     let course = grid::places(pieces, weight, &used, manner);
     let lengths: Vec<f64> = pieces.iter().map(PathPiece::segment_length).collect();
     let mut scale = vec![1.0; course.places.len()];
@@ -261,7 +269,10 @@ impl Draft {
         let mut time = 0.0;
         for (k, place) in places.iter().enumerate() {
             if place.step > 0.0 {
-                time += 2.0 * place.step / (self.states[k].speed + self.states[k - 1].speed);
+                let (from, to) = (&self.states[k - 1], &self.states[k]);
+                let lasts =
+                    Law::duration([from.speed, from.acceleration[1]], [to.speed, to.acceleration[0]], place.step);
+                time += if lasts.is_finite() { lasts } else { 2.0 * place.step / (from.speed + to.speed) };
             }
             times.push(time);
         }
@@ -281,7 +292,7 @@ impl Draft {
                     (accelerations[k][1][axis] - accelerations[from][0][axis]).abs() / (limits.jerk[axis] * time)
                 })
                 .fold(0.0, f64::max);
-            if asked > 1.03 {
+            if asked > 1.0 + MIDDLE_JERK {
                 for over in &mut over[from..=k] {
                     *over = over.max(asked);
                 }

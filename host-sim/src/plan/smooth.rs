@@ -143,21 +143,13 @@ pub(super) fn parts(places: &[Place], k: usize) -> bool {
 }
 
 /// The convex hull of x + D between corners, less D.
-fn round_peaks(
-    course: &Course,
-    speed: &[f64],
-    known: &[Option<f64>],
-    jerk: &[f64],
-    parted: &[bool],
-) -> Vec<State> {
-    let places = &course.places;
+fn round_peaks(course: &Course, speed: &[f64], known: &[Option<f64>], jerk: &[f64], parted: &[bool]) -> Vec<State> {
     let mut states: Vec<State> = speed.iter().map(|&speed| State { speed, acceleration: [0.0; 2] }).collect();
     let mut from = 0;
-    for k in 1..=places.len() {
-        if k == places.len() || parted[k] {
-            hull(course, &mut states, known, jerk, from, k);
-            from = k;
-        }
+    let borders = parted.iter().enumerate().skip(1).filter(|&(_, &parted)| parted).map(|(k, _)| k);
+    for to in borders.chain([speed.len()]) {
+        hull(course, &mut states, known, jerk, from, to);
+        from = to;
     }
     states
 }

@@ -1,7 +1,7 @@
 //! Plans a path while it comes, in a window of it: any length in the same memory.
 //!
 //! How far one has to look ahead depends on the path, so no length of the window is right. Instead it is asked whether what lies beyond could
-//! matter: a window is bounded twice ([`super::bound`]), as if the path ended at rest at its end, and as if it went on as fast as it likes.
+//! matter: a window is bounded twice ([`mod@super::bound`]), as if the path ended at rest at its end, and as if it went on as fast as it likes.
 //! Up to where both agree nothing beyond changes the speed, and a little before that, by the reach of a jerk, nothing changes the plan. So much
 //! goes out; where that is nothing, the window grows. The next window begins a little before its first new piece, at the speed that the plan
 //! had there, so that the plan of both is one.
