@@ -9,7 +9,8 @@ use shared::complex::Complex;
 use shared::fixed::round_point;
 
 use super::limits::Limits;
-use super::planner::{Manner, Plan, PlanError, planned};
+use super::manner::Manner;
+use super::planner::{Plan, PlanError, planned};
 use crate::job::Units;
 use crate::path::Path;
 use crate::plant::{Measured, Plant};

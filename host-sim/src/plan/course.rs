@@ -3,7 +3,7 @@
 use shared::complex::Complex;
 use shared::curve::{Curve as _, Segment};
 
-use super::planner::{Manner, Rests};
+use super::manner::{Manner, Rests};
 use crate::contour::SMOOTH;
 use crate::path::{Path, PathPiece};
 

@@ -8,7 +8,7 @@ use shared::curve::Segment;
 use super::caps::{Cap, alone, caps};
 use super::course::{Course, Place};
 use super::limits::Limits;
-use super::planner::Manner;
+use super::manner::Manner;
 use crate::path::PathPiece;
 
 /// The time that a step takes at most, in s.

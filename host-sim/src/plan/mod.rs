@@ -9,7 +9,9 @@
 //! | `smooth` | lowers a speed profile until no jerk is above its limit |
 //! | `grid` | how near to each other the places of a plan stand |
 //! | [`law`] | the profiles of pieces that make such speeds |
-//! | [`planner`] | all of that for a path |
+//! | `draft` | one attempt: such speeds and laws, and where they ask for too much |
+//! | [`manner`] | where a path rests, and how it begins and ends |
+//! | [`planner`] | all of that for a path: drafts until one keeps its limits |
 //! | [`budget`] | a plan that keeps a plant's contour error within a budget |
 //! | [`streamed`] | the same for a path of any length, in the same memory |
 //! | [`demand`] | what a simulated run asks of a machine |
@@ -19,9 +21,11 @@ pub mod budget;
 pub mod caps;
 pub mod course;
 pub mod demand;
+mod draft;
 mod grid;
 pub mod law;
 pub mod limits;
+pub mod manner;
 pub mod planner;
 mod smooth;
 pub mod streamed;
@@ -31,5 +35,6 @@ pub use budget::{BudgetError, Budgeted, Response, within_budget};
 pub use course::Course;
 pub use demand::{Demand, Recorder};
 pub use limits::Limits;
-pub use planner::{Manner, Plan, PlanError, Rests, plan, planned};
+pub use manner::{Manner, Rests};
+pub use planner::{Plan, PlanError, plan, planned};
 pub use streamed::Streamed;

@@ -2,33 +2,19 @@
 
 use std::collections::BTreeMap;
 
-use super::bound::{self, Allowed};
-use super::caps::{Cap, Reason, caps};
-use super::course::{Course, Place};
-use super::grid;
-use super::law::{self, Law, Parts, Tolerance};
-use super::limits::{JERK_WINDOW, Limits};
-use super::smooth::{self, State};
-use crate::path::{Path, PathPiece};
 use shared::pace::PaceLimits;
 use shared::piece::Header;
 
+use super::caps::Reason;
+use super::course::Course;
+use super::draft::{Draft, lessen};
+use super::grid;
+use super::limits::Limits;
+use super::manner::Manner;
+use crate::path::{Path, PathPiece};
+
 /// Parts of velocity, acceleration and jerk that a plan uses: what lies between places, and what a cubic departs by, is in the rest.
 const USED: [f64; 3] = [0.999, 0.994, 0.96];
-
-/// How far a law may be from the speeds that it follows, as a part of the speed, and of the acceleration limit.
-const SPEED_TOLERANCE: f64 = 5e-4;
-const ACCELERATION_TOLERANCE: f64 = 4e-3;
-
-/// By how much the middle of a step may be above a cap and an acceleration that a plan uses.
-const MIDDLE_SPEED: f64 = 2e-3;
-const MIDDLE_ACCELERATION: f64 = 6e-3;
-
-/// The same of a jerk: where an acceleration turns within a step, its change seems larger than it is.
-const MIDDLE_JERK: f64 = 0.06;
-
-/// What a step without a law counts as: too much.
-const WITHOUT_LAW: f64 = 1.3;
 
 /// How often places where a plan asks for too much are given less.
 const ROUNDS: usize = 12;
@@ -72,34 +58,6 @@ impl Plan {
         shares.sort_by(|a, b| b.1.total_cmp(&a.1));
         shares
     }
-}
-
-/// How a path goes on from piece to piece, and how it begins and ends.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Manner {
-    /// Where it rests on the way.
-    pub rests: Rests,
-    /// The speeds of the centre at which it begins and ends, in mm/s; none where that is free.
-    pub ends: [Option<f64>; 2],
-    /// Whether the job's own reductions of the feed at corners hold too.
-    pub reductions: bool,
-}
-
-impl Manner {
-    /// From rest to rest, and through all corners at what they bear.
-    pub const USUAL: Self = Self { rests: Rests::Never, ends: [Some(0.0); 2], reductions: false };
-}
-
-/// Where a path rests on the way, as RS-274 has it.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Rests {
-    /// Nowhere: G64.
-    #[default]
-    Never,
-    /// In every corner: G61.
-    InCorners,
-    /// Wherever one segment or fill ends and another begins: G61.1.
-    AtNodes,
 }
 
 /// Why a path cannot be planned.
@@ -174,233 +132,4 @@ pub(super) fn check_ends(plan: Plan, ends: [Option<f64>; 2]) -> Result<Plan, Pla
         Some(most) => Err(PlanError::End { most }),
         None => Ok(plan),
     }
-}
-
-/// One attempt.
-struct Draft {
-    course: Course,
-    caps: Vec<Cap>,
-    states: Vec<State>,
-}
-
-impl Draft {
-    fn new(course: Course, limits: &Limits, scale: &[f64]) -> Self {
-        let caps = caps(&course, limits, scale);
-        let allowed = allowed(&course, &caps, limits, scale);
-        let found = bound::within(&course, limits, &allowed);
-        let states = if limits.jerk.iter().all(|jerk| jerk.is_infinite()) {
-            smooth::as_it_is(&course, &found.speed)
-        } else {
-            let jerk = along(&course, &found.speed, limits, scale);
-            smooth::smooth(&course, &caps, &allowed, &found.speed, &jerk)
-        };
-        Self { course, caps, states }
-    }
-
-    /// By what factor each place asks for more than it bears; 1 where it does not.
-    fn over(&self, limits: &Limits, lengths: &[f64]) -> Vec<f64> {
-        let accelerations = self.accelerations();
-        let mut over: Vec<f64> = accelerations
-            .iter()
-            .map(|sides| {
-                let of = |a: &[f64; 2]| (a[0].abs() / limits.acceleration[0]).max(a[1].abs() / limits.acceleration[1]);
-                of(&sides[0]).max(of(&sides[1])).max(1.0)
-            })
-            .map(|over| if over < 1.0 + 4e-3 { 1.0 } else { over })
-            .collect();
-        if limits.jerk.iter().any(|jerk| jerk.is_finite()) {
-            self.jerks(limits, &accelerations, &mut over);
-        }
-        self.steps(limits, lengths, &mut over);
-        over
-    }
-
-    /// What a law asks for in the middle of its step.
-    fn steps(&self, limits: &Limits, lengths: &[f64], over: &mut [f64]) {
-        for (k, pair) in self.course.places.windows(2).enumerate() {
-            let [before, after] = pair else { continue };
-            if after.step == 0.0 {
-                continue;
-            }
-            let (from, to) = (&self.states[k], &self.states[k + 1]);
-            let way = (after.fraction - before.fraction) * lengths.get(after.piece).copied().unwrap_or(0.0);
-            let asked = match Law::between(law::contact(before, from, 1), law::contact(after, to, 0), way) {
-                Some(law) => {
-                    let [feed, slope, behind] = law.at(0.5 * law.duration);
-                    let part = behind / way;
-                    let mean = |a: f64, b: f64| a + (b - a) * part;
-                    let stretch = mean(before.stretch, after.stretch);
-                    let speed = feed * stretch;
-                    let along = slope * stretch + mean(before.stretching, after.stretching) * feed * feed;
-                    let direction = before.direction + (after.direction - before.direction) * part;
-                    let bend = mean(before.curvature, after.curvature) * speed * speed;
-                    let a = direction * along + direction.left() * bend;
-                    let cap = self.caps[k].speed.max(self.caps[k + 1].speed);
-                    let fast = (speed / cap / (1.0 + MIDDLE_SPEED)).powi(2);
-                    let [ax, ay] = limits.acceleration;
-                    let steep = (a.re.abs() / ax).max(a.im.abs() / ay) / (1.0 + MIDDLE_ACCELERATION);
-                    fast.max(steep)
-                }
-                None => WITHOUT_LAW,
-            };
-            if asked > 1.0 {
-                over[k] = over[k].max(asked);
-                over[k + 1] = over[k + 1].max(asked);
-            }
-        }
-    }
-
-    /// The accelerations of both axes in front of and behind each place.
-    fn accelerations(&self) -> Vec<[[f64; 2]; 2]> {
-        let of = |(place, state): (&Place, &State)| {
-            state.acceleration.map(|along| {
-                let a =
-                    place.direction * along + place.direction.left() * (place.curvature * state.speed * state.speed);
-                [a.re, a.im]
-            })
-        };
-        self.course.places.iter().zip(&self.states).map(of).collect()
-    }
-
-    /// Changes of acceleration over the window of a jerk, but across corners.
-    fn jerks(&self, limits: &Limits, accelerations: &[[[f64; 2]; 2]], over: &mut [f64]) {
-        let places = &self.course.places;
-        let mut times = Vec::with_capacity(places.len());
-        let mut time = 0.0;
-        for (k, place) in places.iter().enumerate() {
-            if place.step > 0.0 {
-                let (from, to) = (&self.states[k - 1], &self.states[k]);
-                let lasts =
-                    Law::duration([from.speed, from.acceleration[1]], [to.speed, to.acceleration[0]], place.step);
-                time += if lasts.is_finite() { lasts } else { 2.0 * place.step / (from.speed + to.speed) };
-            }
-            times.push(time);
-        }
-        let mut from = 0;
-        for k in 1..places.len() {
-            if smooth::parts(places, k) {
-                from = k;
-                continue;
-            }
-            while times[k] - times[from] > JERK_WINDOW && times[k] - times[from + 1] >= JERK_WINDOW {
-                from += 1;
-            }
-            // From the place at or before the window's start, so that the time is the window or a little more.
-            let time = (times[k] - times[from]).max(JERK_WINDOW);
-            let asked = (0..2)
-                .map(|axis| {
-                    (accelerations[k][1][axis] - accelerations[from][0][axis]).abs() / (limits.jerk[axis] * time)
-                })
-                .fold(0.0, f64::max);
-            if asked > 1.0 + MIDDLE_JERK {
-                for over in &mut over[from..=k] {
-                    *over = over.max(asked);
-                }
-            }
-        }
-    }
-
-    /// The pieces; all of it slower by what it still asks too much.
-    fn finish(self, pieces: &[PathPiece], limits: &Limits, over: f64) -> Plan {
-        let [ax, ay] = limits.acceleration;
-        let tolerance = Tolerance { speed: SPEED_TOLERANCE, acceleration: ACCELERATION_TOLERANCE * ax.min(ay) };
-        let slower = if over > 1.0 { over.cbrt().max(over.sqrt()) } else { 1.0 };
-        let (mut planned, mut from, mut time) =
-            (Vec::with_capacity(pieces.len()), Vec::with_capacity(pieces.len()), 0.0);
-        let mut start = 0;
-        for (number, piece) in pieces.iter().enumerate() {
-            let end = start + self.course.places[start..].iter().take_while(|place| place.piece == number).count();
-            let (places, states) = (&self.course.places[start..end], &self.states[start..end]);
-            start = end;
-            let Parts { laws } = Parts::of(piece, places, states, tolerance);
-            let (mut first, count) = (0, laws.len());
-            for (k, (last, law)) in laws.into_iter().enumerate() {
-                let interval = [places[first].xi, places[last].xi];
-                push(&mut planned, piece, interval, &law, slower, [k == 0, k + 1 == count]);
-                from.push(number);
-                time += law.duration * slower;
-                first = last;
-            }
-        }
-        let speed: Vec<f64> = self.states.iter().map(|state| state.speed / slower).collect();
-        let reason = self.reasons(limits);
-        Plan { pieces: planned, from, time, course: self.course, speed, reason }
-    }
-
-    /// What limits each place: its cap where it is reached, else the acceleration or the jerk of an axis.
-    fn reasons(&self, limits: &Limits) -> Vec<Reason> {
-        let accelerations = self.accelerations();
-        let of = |((cap, state), sides): ((&Cap, &State), &[[f64; 2]; 2])| {
-            if state.speed >= cap.speed * (1.0 - 1e-3) {
-                return cap.reason;
-            }
-            let part = |axis: usize| sides[0][axis].abs().max(sides[1][axis].abs()) / limits.acceleration[axis];
-            let axis = usize::from(part(1) > part(0));
-            if part(axis) > 0.97 { Reason::Acceleration(axis) } else { Reason::Jerk(axis) }
-        };
-        self.caps.iter().zip(&self.states).zip(&accelerations).map(of).collect()
-    }
-}
-
-fn push(all: &mut Vec<PathPiece>, piece: &PathPiece, interval: [f64; 2], law: &Law, slower: f64, whole: [bool; 2]) {
-    let (feed, profile) = law.profile();
-    let mut part = if whole == [true; 2] { *piece } else { piece.over(interval) };
-    (part.feed, part.profile, part.start, part.end) = (feed / slower, Some(profile), None, None);
-    part.start_corner = piece.start_corner.filter(|_| whole[0]);
-    part.end_corner = piece.end_corner.filter(|_| whole[1]);
-    all.push(part);
-}
-
-/// What places bear below their caps.
-pub(super) fn allowed(course: &Course, caps: &[Cap], limits: &Limits, scale: &[f64]) -> Vec<Allowed> {
-    let of = |((place, cap), &scale): ((&Place, &Cap), &f64)| {
-        let place = Place { feed: cap.speed, ..*place };
-        Allowed::at(&place, &limits.with_margin([1.0, scale, 1.0]))
-    };
-    course.places.iter().zip(caps).zip(scale).map(of).collect()
-}
-
-/// The jerk along the way that the axes leave at each place beside what the bend takes.
-fn along(course: &Course, speed: &[f64], limits: &Limits, scale: &[f64]) -> Vec<f64> {
-    /// What is left at least.
-    const LEAST: f64 = 0.2;
-    let places = &course.places;
-    (0..places.len())
-        .map(|k| {
-            let place = &places[k];
-            let v = speed[k];
-            let before = k.saturating_sub(1);
-            let (step, bends) = (place.step, place.curvature - places[before].curvature);
-            let bending = if step > 0.0 { bends / step.max(v * JERK_WINDOW) } else { 0.0 };
-            let a = if step > 0.0 { (v * v - speed[before] * speed[before]) / (2.0 * step) } else { 0.0 };
-            let along = [place.direction.re, place.direction.im];
-            let left = place.direction.left();
-            let across = [left.re, left.im];
-            (0..2)
-                .map(|axis| {
-                    let taken = ((bending * across[axis] - place.curvature.powi(2) * along[axis]) * v.powi(3)).abs()
-                        + (3.0 * place.curvature * across[axis] * v * a).abs();
-                    let jerk = limits.jerk[axis];
-                    (jerk - taken).max(LEAST * jerk) * scale[k] / along[axis].abs()
-                })
-                .fold(f64::INFINITY, f64::min)
-        })
-        .collect()
-}
-
-/// Gives less to the places that ask for too much, and to their neighbours.
-fn lessen(scale: &mut [f64], over: &[f64]) {
-    /// Places on each side that share it.
-    const NEAR: usize = 6;
-    let mut next = scale.to_vec();
-    for (k, &over) in over.iter().enumerate() {
-        if over > 1.0 {
-            let less = (1.0 / over).max(0.7) * 0.995;
-            let (low, high) = (k.saturating_sub(NEAR), (k + NEAR + 1).min(scale.len()));
-            for j in low..high {
-                next[j] = next[j].min(scale[j] * less);
-            }
-        }
-    }
-    scale.copy_from_slice(&next);
 }

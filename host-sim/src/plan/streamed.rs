@@ -10,8 +10,10 @@ use std::collections::VecDeque;
 
 use super::bound;
 use super::caps::caps;
+use super::draft::allowed;
 use super::limits::Limits;
-use super::planner::{Manner, Plan, PlanError, allowed, best, check_ends};
+use super::manner::Manner;
+use super::planner::{Plan, PlanError, best, check_ends};
 use crate::path::PathPiece;
 
 /// Pieces in a window, if that is enough.
