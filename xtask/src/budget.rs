@@ -39,8 +39,8 @@ const MOTION_BAR: u32 = 800;
 /// The stages that watch over it.
 const WATCH_STAGES: [&str; 2] = ["safety", "control"];
 
-/// Instructions of the whole interrupt with two servo axes at order 1, at a node too, at most: as many as three step axes may take at
-/// rest.
+/// Instructions of the whole interrupt with two servo axes at order 1, at a node too, at most: the 1 500 that three step axes may take
+/// at rest, and what the profile beside the ramps takes of a piece.
 const INTERRUPT_BAR: u32 = 1_525;
 
 /// The same along a profile, where the time is sought by Newton's method: as order 2 takes along a ramp, it may take more.
