@@ -104,9 +104,8 @@ fn read_plant(name: &str) -> Result<Plant, InputError> {
     }
     let source = Source::read(name)?;
     Plant::from_toml(&source.text, f64::from(shared::TICK)).map_err(|error| InputError {
-        place: name.to_string(),
         position: Some((error.place().line, error.place().column)),
-        message: error.message(),
+        ..InputError::new(name, error.message())
     })
 }
 
