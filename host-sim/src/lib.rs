@@ -6,6 +6,7 @@
 //! | --- | --- |
 //! | [`units`] | millimetres and inches, at the border |
 //! | [`input`] | files as they are read, and errors that name file, line and column |
+//! | [`program`] | programs, one motion after another: RS-274 |
 //! | [`contour`] | the part's curve: segments and nodes |
 //! | [`offset`] | the exact trimmed offset of a contour |
 //! | [`spline`] | splines through points, and ways to drive them at a constant feed |
@@ -42,6 +43,7 @@ pub mod path;
 pub mod plan;
 pub mod plant;
 pub mod prepare;
+pub mod program;
 pub mod report;
 pub mod reproduce;
 pub mod rig;

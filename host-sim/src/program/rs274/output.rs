@@ -1,0 +1,34 @@
+//! The way of items to the sink, with their places.
+
+use super::fault::{Checked, Fault, fail};
+use crate::program::lines::column;
+use crate::program::{Action, Feed, Item};
+
+/// Where the items of one line go.
+pub struct Output<'a, 'b> {
+    /// The number of the line.
+    pub line: usize,
+    text: &'a [u8],
+    sink: &'a mut (dyn FnMut(&Item<'_>) -> Result<(), String> + 'b),
+    /// What the sink said when it refused an item.
+    pub refusal: Option<String>,
+}
+
+impl<'a, 'b> Output<'a, 'b> {
+    /// For a line.
+    pub fn new(line: usize, text: &'a [u8], sink: &'a mut (dyn FnMut(&Item<'_>) -> Result<(), String> + 'b)) -> Self {
+        Self { line, text, sink, refusal: None }
+    }
+
+    /// Gives an item that the word at `at` asks for.
+    pub fn give(&mut self, at: usize, from: [f64; 3], feed: Feed, action: Action<'_>) -> Checked<()> {
+        let item = Item { line: self.line, column: column(self.text, at), from, feed, action };
+        match (self.sink)(&item) {
+            Ok(()) => Ok(()),
+            Err(reason) => {
+                self.refusal = Some(reason);
+                fail(at, Fault::Refused)
+            }
+        }
+    }
+}
