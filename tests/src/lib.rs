@@ -7,6 +7,8 @@
 //! [`properties`] holds a trimmed offset against what must be true of it, [`expected`] against closed forms; [`winding`] and
 //! [`largest_disc`] serve these.
 //!
+//! For programs: [`nurbs`] measures B-splines.
+//!
 //! For the link: [`noisy_line`] loses, doubles, reorders, damages and cuts frames; [`link_script`] makes conversations of any bytes, and
 //! [`strict_machine`] stands behind the endpoint and trusts nothing that it is handed. The targets of `fuzz/` use both.
 #![forbid(unsafe_code)]
@@ -19,6 +21,7 @@ pub mod expected;
 pub mod largest_disc;
 pub mod link_script;
 pub mod noisy_line;
+pub mod nurbs;
 pub mod oracle;
 pub mod properties;
 pub mod random;
