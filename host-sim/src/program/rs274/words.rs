@@ -1,8 +1,9 @@
 //! A block: the words of a line.
 //!
-//! The lexer is the project's own. The crate `gcode` 0.7 reads 1.6 million lines/s on the desk where this reader does 3
-//! million with everything behind the lexer, but it gives numbers as `f32` (30 nm at 500 mm), no parameters or expressions,
-//! G1.05 as G1.5, and a panic for `G4294967295` where overflow is checked.
+//! The lexer is the project's own. The crate `gcode` 0.7 passes less than 2 million lines/s to a visitor that only adds up
+//! the numbers of `G1 X Y Z`, where this whole reader does 6 (`cargo bench --bench programs`, same desk); it gives numbers as
+//! `f32`, in steps of 30 nm at 500 mm, no parameters or expressions, G1.05 as G1.5, and panics at `G4294967295` where
+//! overflow is checked.
 
 use super::codes::{Code, GROUPS, Group, Letters, g_group, m_group};
 use super::expression::Values;
