@@ -3,7 +3,7 @@
 //! They stand in the data folder beside the project, and this test says so where that is missing.
 
 use std::fs::File;
-use std::io::BufReader;
+use std::io::{BufReader, Read};
 use std::path::Path;
 
 use host_sim::program::rs274::{Settings, read};
@@ -218,4 +218,51 @@ fn programs_of_others_are_read_whole() {
         assert!(same(&count.lengths, &row.lengths), "{}: {:?} and {:?}", row.file, count.lengths, row.lengths);
         assert!(same(&count.end, &row.end), "{}: {:?} and {:?}", row.file, count.end, row.end);
     }
+}
+
+/// A program that is made while it is read.
+struct Endless {
+    lines: usize,
+    left: usize,
+    rest: Vec<u8>,
+}
+
+impl Read for Endless {
+    fn read(&mut self, buffer: &mut [u8]) -> std::io::Result<usize> {
+        if self.rest.is_empty() && self.left > 0 {
+            self.left -= 1;
+            let k = (self.lines - self.left) % 1000;
+            self.rest = format!("N{k} G1 X{k}.125 Y-{k}.25 Z{k}.5 (a part)\n").into_bytes();
+        }
+        let count = self.rest.len().min(buffer.len());
+        buffer[..count].copy_from_slice(&self.rest[..count]);
+        self.rest.drain(..count);
+        Ok(count)
+    }
+}
+
+/// The most memory that this process has had, in kB; none where the system does not say.
+fn peak() -> Option<usize> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?.trim().trim_end_matches("kB").trim().parse().ok()
+}
+
+/// A hundred megabytes leave no more behind than allocators and the other test do: a few megabytes.
+#[test]
+fn memory_is_flat() {
+    let lines = 2_700_000;
+    let Some(before) = peak() else {
+        println!("SKIPPED: this system does not say how much memory a process has had");
+        return;
+    };
+    let input = BufReader::new(Endless { lines, left: lines, rest: b"F100\n".to_vec() });
+    let mut count = Count::default();
+    let read = read("endless.ngc", input, &Settings::default(), &mut |item| {
+        count.add(item);
+        Ok(())
+    });
+    assert_eq!((read, count.counts[1]), (Ok(lines + 1), lines));
+    let grown = peak().unwrap() - before;
+    println!("{grown} kB more after {lines} lines");
+    assert!(grown < 8192, "{grown} kB");
 }
