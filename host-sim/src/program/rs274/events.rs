@@ -3,9 +3,9 @@
 use super::codes::{Code, Group};
 use super::fault::{Checked, Fault, fail};
 use super::interpreter::Interpreter;
-use super::output::Output;
 use super::words::Block;
 use crate::program::item::{Compensation, Coolant, Cutter, PathMode, Side, Speed, Turning};
+use crate::program::output::Output;
 use crate::program::{Action, Feed, Plane};
 use crate::units::Units;
 

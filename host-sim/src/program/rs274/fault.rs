@@ -3,7 +3,9 @@
 use std::fmt;
 
 use super::codes::{self, Code};
-use crate::program::Plane;
+use crate::program::arc::NoArc;
+use crate::program::output::{Output, Refused};
+use crate::program::{Action, Feed, Plane};
 use crate::units::plain;
 
 /// A fault and the byte of the line where it is.
@@ -21,6 +23,11 @@ pub type Checked<T> = Result<T, Misplaced>;
 /// A fault at a byte, as the error of a result.
 pub fn fail<T>(at: usize, fault: Fault) -> Checked<T> {
     Err(Misplaced { at, fault })
+}
+
+/// Gives an item that the word at `at` asks for.
+pub fn give(out: &mut Output<'_, '_>, at: usize, from: [f64; 3], feed: Feed, action: Action<'_>) -> Checked<()> {
+    out.give(at, from, feed, action).or_else(|Refused| fail(at, Fault::Refused))
 }
 
 /// What is wrong.
@@ -105,14 +112,8 @@ pub enum Fault {
     ArcAcross(char, Plane),
     /// One centre word of two, where they are absolute.
     ArcHalf(char),
-    /// Distances of the ends from the centre, in the program's unit.
-    ArcRadii([f64; 2]),
-    /// A centre where an end is.
-    ArcZero,
-    /// A radius and half of the distance that it should span, in the program's unit.
-    ArcShort([f64; 2]),
-    /// A radius and no way to go.
-    ArcSame,
+    /// An arc that there is not.
+    Arc(NoArc),
 
     /// G53 without G0 or G1.
     MachineMotion,
@@ -218,17 +219,7 @@ impl fmt::Display for Fault {
                 write!(f, "{letter} is no word of a centre in the {name}")
             }
             Self::ArcHalf(letter) => write!(f, "an absolute centre (G90.1) needs {letter} too"),
-            Self::ArcRadii([start, end]) => write!(
-                f,
-                "the start is {} from the centre and the end {}; both are on one circle",
-                plain(start),
-                plain(end)
-            ),
-            Self::ArcZero => f.write_str("the centre is where the arc starts or ends; there is no circle"),
-            Self::ArcShort([radius, half]) => {
-                write!(f, "a radius of {} cannot span the distance; {} or more would do", plain(radius), plain(half))
-            }
-            Self::ArcSame => f.write_str("an arc by radius needs another end; give a full circle by its centre"),
+            Self::Arc(reason) => reason.fmt(f),
             Self::MachineMotion => f.write_str("G53 goes with G0 or G1 only"),
             Self::MachineIncremental => f.write_str("G53 needs absolute distances (G90)"),
             Self::SetupKind => f.write_str("of G10, L2 and L20 are supported"),

@@ -8,14 +8,14 @@ use std::collections::BTreeMap;
 
 use super::Settings;
 use super::codes::{self, ALWAYS, AXES, CENTRE, Code, Group, Letters};
-use super::fault::{Checked, Fault, fail};
+use super::fault::{Checked, Fault, fail, give};
 use super::frames::{AXIS_LETTERS, Frames};
 use super::known::Known;
 use super::nurbs::Curve;
-use super::output::Output;
 use super::parameters::Parameters;
 use super::words::Block;
 use crate::program::item::{Coolant, Speed, Spindle, Turning};
+use crate::program::output::Output;
 use crate::program::{Action, Feed, Plane};
 use crate::units::Units;
 
@@ -158,7 +158,7 @@ impl Interpreter {
 
     /// Gives an event.
     pub fn event(&self, at: usize, action: Action<'_>, out: &mut Output<'_, '_>) -> Checked<()> {
-        out.give(at, self.frames.place(), self.modal.feed, action)
+        give(out, at, self.frames.place(), self.modal.feed, action)
     }
 
     /// The millimetres of the program's unit.

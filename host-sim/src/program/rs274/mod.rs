@@ -37,10 +37,8 @@
 //! | `frames` | coordinate systems, shifts, tool length |
 //! | `interpreter` | modal state, and the order in which a block acts |
 //! | `events`, `setup`, `motion` | what the codes do |
-//! | `arc`, `nurbs` | curves from words |
-//! | `output` | items with their places |
+//! | `nurbs` | the curve between G5.2 and G5.3 |
 
-mod arc;
 mod codes;
 mod events;
 mod expression;
@@ -50,7 +48,6 @@ mod interpreter;
 mod known;
 mod motion;
 mod nurbs;
-mod output;
 mod parameters;
 mod setup;
 #[cfg(test)]
@@ -62,11 +59,11 @@ use std::io::BufRead;
 
 use super::Sink;
 use super::lines::Lines;
+use super::output::Output;
 use crate::input::InputError;
 use crate::units::Units;
 use fault::{Fault, Misplaced};
 use interpreter::Interpreter;
-use output::Output;
 use words::{Block, Kind};
 
 /// What a program does not say itself. Lengths in mm.

@@ -1,13 +1,13 @@
 //! Motions: G0 G1 G2 G3 G5 G5.1 G5.2 G5.3 G53 G80.
 
-use super::arc::Ends;
 use super::codes::{AXES, CENTRE, Code, Group, Letters};
-use super::fault::{Checked, Fault, fail};
+use super::fault::{Checked, Fault, fail, give};
 use super::frames::{AXIS_LETTERS, Axes};
 use super::interpreter::Interpreter;
-use super::output::Output;
 use super::words::Block;
+use crate::program::arc::Ends;
 use crate::program::item::Nurbs;
+use crate::program::output::Output;
 use crate::program::{Action, Arc, Feed, Motion, Plane};
 
 /// The most turns of one arc; no thread has so many.
@@ -82,11 +82,11 @@ impl Interpreter {
         let from = self.frames.place();
         for (axis, &letter) in AXIS_LETTERS.iter().enumerate().skip(3) {
             if end[axis] != self.frames.tip[axis] {
-                out.give(at, from, feed, Action::Further { axis: char::from(letter), to: end[axis] })?;
+                give(out, at, from, feed, Action::Further { axis: char::from(letter), to: end[axis] })?;
             }
         }
         self.frames.tip = end;
-        out.give(at, from, feed, Action::Motion(motion(end)))
+        give(out, at, from, feed, Action::Motion(motion(end)))
     }
 
     /// G2 and G3.
@@ -105,7 +105,7 @@ impl Interpreter {
         let has_centre = !block.letters.and(CENTRE).is_empty();
         let (centre, sweep) = match block.value(b'R') {
             Some(_) if has_centre => return fail(at, Fault::ArcBoth(code)),
-            Some(radius) => ends.by_radius(radius * mm, mm).or_else(|fault| fail(at, fault))?,
+            Some(radius) => ends.by_radius(radius * mm, mm).or_else(|reason| fail(at, Fault::Arc(reason)))?,
             None if !has_centre => return fail(at, Fault::ArcCentre(code)),
             None => {
                 let letter = b'I' + across as u8;
@@ -113,7 +113,7 @@ impl Interpreter {
                     return fail(block.place(letter), Fault::ArcAcross(char::from(letter), plane));
                 }
                 let centre = [self.centre(first, at, block)?, self.centre(second, at, block)?];
-                (centre, ends.about(centre, mm).or_else(|fault| fail(at, fault))?)
+                (centre, ends.about(centre, mm).or_else(|reason| fail(at, Fault::Arc(reason)))?)
             }
         };
         self.go(end, at, feed, |[x, y, z, ..]| Motion::Arc(Arc { plane, centre, to: [x, y, z], sweep, turns }), out)

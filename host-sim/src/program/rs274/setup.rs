@@ -4,9 +4,9 @@ use super::codes::{AXES, Code, Group};
 use super::fault::{Checked, Fault, fail};
 use super::frames::{AXIS_LETTERS, Axes, turns};
 use super::interpreter::Interpreter;
-use super::output::Output;
 use super::words::Block;
 use crate::program::Action;
+use crate::program::output::Output;
 
 impl Interpreter {
     /// The values of a block's axis words in mm or degrees, each with its axis.

@@ -1,8 +1,11 @@
 //! The way of items to the sink, with their places.
 
-use super::fault::{Checked, Fault, fail};
-use crate::program::lines::column;
-use crate::program::{Action, Feed, Item};
+use super::lines::column;
+use super::{Action, Feed, Item};
+
+/// That the sink takes no more; its reason is kept in [`Output::refusal`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Refused;
 
 /// Where the items of one line go.
 pub struct Output<'a, 'b> {
@@ -21,13 +24,13 @@ impl<'a, 'b> Output<'a, 'b> {
     }
 
     /// Gives an item that the word at `at` asks for.
-    pub fn give(&mut self, at: usize, from: [f64; 3], feed: Feed, action: Action<'_>) -> Checked<()> {
+    pub fn give(&mut self, at: usize, from: [f64; 3], feed: Feed, action: Action<'_>) -> Result<(), Refused> {
         let item = Item { line: self.line, column: column(self.text, at), from, feed, action };
         match (self.sink)(&item) {
             Ok(()) => Ok(()),
             Err(reason) => {
                 self.refusal = Some(reason);
-                fail(at, Fault::Refused)
+                Err(Refused)
             }
         }
     }
