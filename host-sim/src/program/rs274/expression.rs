@@ -36,7 +36,7 @@ impl<'a> Values<'a> {
 
     /// The next byte that is no blank.
     pub fn peek(&mut self) -> Option<u8> {
-        while matches!(self.text.get(self.at), Some(b' ' | b'\t')) {
+        while self.text.get(self.at).is_some_and(|&byte| is_blank(byte)) {
             self.at += 1;
         }
         self.text.get(self.at).copied()
@@ -135,18 +135,18 @@ impl<'a> Values<'a> {
     fn operator(&mut self) -> Option<(Operator, u8, usize)> {
         self.peek()?;
         let rest = self.text.get(self.at..)?;
-        OPERATORS.iter().find_map(|&(text, operator, binds)| {
-            let found = rest.get(..text.len())?.eq_ignore_ascii_case(text);
-            found.then_some((operator, binds, text.len()))
-        })
+        OPERATORS
+            .iter()
+            .find_map(|&(text, operator, binds)| spelled(rest, text).map(|length| (operator, binds, length)))
     }
 
     /// A function and its argument.
     fn function(&mut self) -> Checked<f64> {
         let at = self.at;
         let rest = self.text.get(at..).unwrap_or_default();
-        let length = rest.iter().take_while(|byte| byte.is_ascii_alphabetic()).count();
-        let name = String::from_utf8_lossy(&rest[..length]).to_ascii_lowercase();
+        let length = rest.iter().take_while(|&&byte| byte.is_ascii_alphabetic() || is_blank(byte)).count();
+        let letters = rest[..length].iter().filter(|&&byte| !is_blank(byte));
+        let name: String = letters.map(|byte| char::from(byte.to_ascii_lowercase())).collect();
         self.at += length;
         if name == "exists" {
             return self.exists();
@@ -220,6 +220,30 @@ impl<'a> Values<'a> {
         }
         Ok(Key::Number(whole as u16))
     }
+}
+
+/// Blanks have no meaning, not even within a name.
+fn is_blank(byte: u8) -> bool {
+    matches!(byte, b' ' | b'\t')
+}
+
+/// How many bytes spell a name in small letters, blanks and capitals aside; none if they spell another one.
+fn spelled(bytes: &[u8], name: &[u8]) -> Option<usize> {
+    let mut left = name.iter();
+    let mut next = left.next();
+    for (at, &byte) in bytes.iter().enumerate() {
+        if is_blank(byte) {
+            continue;
+        }
+        if next != Some(&byte.to_ascii_lowercase()) {
+            return None;
+        }
+        next = left.next();
+        if next.is_none() {
+            return Some(at + 1);
+        }
+    }
+    None
 }
 
 const FUNCTIONS: [&str; 13] =

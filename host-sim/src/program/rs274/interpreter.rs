@@ -19,6 +19,8 @@ use crate::program::output::Output;
 use crate::program::{Action, Feed, Plane};
 use crate::units::Units;
 
+/// G53 in tenths.
+pub const MACHINE: u16 = 530;
 /// G5.2 in tenths.
 const NURBS: u16 = 52;
 /// G5.3 in tenths.
@@ -114,8 +116,10 @@ impl Interpreter {
         if block.has_beside(Group::Motion) || !block.letters.and(ALWAYS).is_empty() {
             self.switch(block, out)?;
         }
-        if let Some((code, at)) = motion {
-            self.motion(code, at, block, out)?;
+        match (motion, block.in_group(Group::Once)) {
+            (Some((code, at)), _) => self.motion(code, at, block, out)?,
+            (None, Some((Code { tenths: MACHINE, .. }, at))) => return fail(at, Fault::MachineMotion),
+            (None, _) => {}
         }
         match block.in_group(Group::Stop) {
             Some((Code { tenths: 20 | 300, .. }, at)) => self.end(at, out).map(|()| true),
@@ -189,7 +193,9 @@ impl Interpreter {
         if self.curve.is_open() {
             let goes_on = matches!(motion, None | Some((Code { tenths: NURBS | NURBS_END, .. }, _)));
             if !goes_on || block.has_beside(Group::Motion) || !block.letters.and(Letters::of(b"FST")).is_empty() {
-                return fail(first_place(block, block.letters), Fault::NurbsOpen);
+                let code = block.codes().map(|(_, at)| at).min();
+                let word = (!block.letters.is_empty()).then(|| first_place(block, block.letters));
+                return fail(code.into_iter().chain(word).min().unwrap_or(0), Fault::NurbsOpen);
             }
         }
         match block.letters.without(used).without(ALWAYS).first() {

@@ -3,7 +3,7 @@
 use super::codes::{AXES, CENTRE, Code, Group, Letters};
 use super::fault::{Checked, Fault, fail, give};
 use super::frames::{AXIS_LETTERS, Axes};
-use super::interpreter::Interpreter;
+use super::interpreter::{Interpreter, MACHINE};
 use super::words::Block;
 use crate::program::arc::Ends;
 use crate::program::item::Nurbs;
@@ -18,7 +18,7 @@ const HIGHEST_ORDER: u32 = 16;
 impl Interpreter {
     /// Does the motion of a block.
     pub(super) fn motion(&mut self, code: Code, at: usize, block: &Block, out: &mut Output<'_, '_>) -> Checked<()> {
-        let machine = matches!(block.in_group(Group::Once), Some((Code { tenths: 530, .. }, _)));
+        let machine = matches!(block.in_group(Group::Once), Some((Code { tenths: MACHINE, .. }, _)));
         if machine && code.tenths > 10 {
             return fail(at, Fault::MachineMotion);
         }

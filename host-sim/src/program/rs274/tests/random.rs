@@ -72,6 +72,33 @@ proptest! {
     }
 }
 
+/// A program that is right, without comments and names, in which blanks and capitals change nothing.
+const RIGHT: &str = "n10g1x1.5y-2z.3f100\ng2i2j1p2f33.25\n#1=[2**3+sin[30]]\ng1y[#1/2mod3]z-#1\ng64p.1q.2s1000m3\n\
+                     g91.1g17g3i1j0\ng5i1j1p1q1x2y2\ng20g92x0a3\nt1m6\n";
+
+proptest! {
+    /// The standard: blanks and tabs have no meaning anywhere, and letters are capitals or not.
+    #[test]
+    fn blanks_and_capitals_mean_nothing(changes in proptest::collection::vec((any::<prop::sample::Index>(), 0..3), 0..60)) {
+        let items = |program: &str| {
+            let (items, error) = super::all(program, &Settings::default());
+            (items.into_iter().map(|item| (item.from, item.feed, item.got)).collect::<Vec<_>>(), error)
+        };
+        let mut program = RIGHT.to_string();
+        for (place, kind) in changes {
+            let at = place.index(program.len());
+            match kind {
+                0 => program.insert(at, ' '),
+                1 => program.insert(at, '\t'),
+                _ => program = program[..at].to_string() + &program[at..=at].to_uppercase() + &program[at + 1..],
+            }
+        }
+        let right = items(RIGHT);
+        prop_assert_eq!(&right.1, &None);
+        prop_assert_eq!(items(&program), right, "{}", program);
+    }
+}
+
 #[test]
 fn depth_is_bounded() {
     for text in ["[", "#", "-[", "sin[", "#[", "1+[", "exists[#["] {
