@@ -220,6 +220,52 @@ fn programs_of_others_are_read_whole() {
     }
 }
 
+/// A motion as LinuxCNC's interpreter prints it: where it ends, and for an arc its centre and whether it turns left.
+#[derive(Debug, PartialEq)]
+struct Canonical {
+    to: [f64; 3],
+    arc: Option<([f64; 2], bool)>,
+}
+
+/// The motion of a line of its output; none if it is something else.
+fn canonical(line: &str) -> Option<Canonical> {
+    let (name, rest) = line.split_once("..... ")?.1.split_once('(')?;
+    let values: Vec<f64> =
+        rest.trim_end().trim_end_matches(')').split(", ").map_while(|text| text.parse().ok()).collect();
+    match (name, &values[..]) {
+        ("STRAIGHT_TRAVERSE" | "STRAIGHT_FEED", &[x, y, z, ..]) => Some(Canonical { to: [x, y, z], arc: None }),
+        ("ARC_FEED", &[x, y, first, second, turns, z, ..]) => {
+            Some(Canonical { to: [x, y, z], arc: Some(([first, second], turns > 0.0)) })
+        }
+        _ => None,
+    }
+}
+
+/// LinuxCNC's own reading of a program, up to where it compensates for the tool, which is done elsewhere here. It prints
+/// inches with four decimals.
+#[test]
+fn motions_are_those_that_linuxcnc_prints() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/data/gcode");
+    let Ok(expected) = std::fs::read_to_string(folder.join("lcnc_mill-line-arc-entry.expected")) else {
+        println!("SKIPPED: the programs of the data folder are not here");
+        return;
+    };
+    let four = |mm: f64| (mm / 25.4 * 1e4).round() / 1e4 + 0.0;
+    let (mut motions, mut compensated) = (Vec::new(), false);
+    let input = BufReader::new(File::open(folder.join("lcnc_mill-line-arc-entry.ngc")).unwrap());
+    let read = read("mill-line-arc-entry", input, &Settings::default(), &mut |item| {
+        compensated |= matches!(item.action, Action::Compensation(_));
+        if let (Action::Motion(motion), false) = (item.action, compensated) {
+            let arc = if let Motion::Arc(arc) = motion { Some((arc.centre.map(four), arc.sweep > 0.0)) } else { None };
+            motions.push(Canonical { to: motion.to().unwrap().map(four), arc });
+        }
+        Ok(())
+    });
+    assert!(read.is_ok() && motions.len() == 11, "{motions:?}");
+    let expected: Vec<Canonical> = expected.lines().filter_map(canonical).take(motions.len()).collect();
+    assert_eq!(motions, expected);
+}
+
 /// A program that is made while it is read.
 struct Endless {
     lines: usize,
