@@ -104,31 +104,25 @@ pub fn read(name: &str, input: impl BufRead, settings: &Settings, sink: Sink<'_>
     let mut interpreter = Interpreter::new(settings);
     let mut block = Block::default();
     let mut begun = false;
-    while lines.advance()? {
+    loop {
+        let more = lines.advance()?;
         let mut out = Output::new(lines.number(), lines.text(), sink);
-        let kind =
-            block.read(lines.text(), settings.block_delete, &interpreter.parameters, &interpreter.known(out.line));
+        let known = interpreter.known(out.line);
+        let kind = block.read(lines.text(), settings.block_delete, &interpreter.parameters, &known);
         let done = kind.and_then(|kind| match kind {
+            _ if !more => interpreter.end(0, &mut out).map(|()| true),
             Kind::Words => interpreter.block(&mut block, &mut out).inspect(|_| begun |= !block.is_empty()),
             // The first one may stand in front; behind a block it ends the program.
             Kind::Percent if std::mem::replace(&mut begun, true) => interpreter.end(0, &mut out).map(|()| true),
             Kind::Percent | Kind::Deleted => Ok(false),
         });
         match done {
-            Ok(false) => {}
             Ok(true) => return Ok(lines.number()),
+            Ok(false) => {}
             Err(Misplaced { at, fault }) => {
                 let message = out.refusal.take().filter(|_| fault == Fault::Refused);
                 return Err(lines.error(at, message.unwrap_or_else(|| fault.to_string())));
             }
-        }
-    }
-    let mut out = Output::new(lines.number(), lines.text(), sink);
-    match interpreter.end(0, &mut out) {
-        Ok(()) => Ok(lines.number()),
-        Err(Misplaced { at, fault }) => {
-            let message = out.refusal.take();
-            Err(lines.error(at, message.unwrap_or_else(|| fault.to_string())))
         }
     }
 }
