@@ -90,7 +90,7 @@ fn helices_and_turns() {
     assert!(items.iter().all(|item| matches!(item.got, Got::Arc(_))));
 }
 
-/// G5 of LinuxCNC's manual: an S through three points; the second block takes the tangent of the first one over.
+/// An S through three points; the second block takes the tangent of the first one over.
 #[test]
 fn cubic_splines_go_on_smoothly() {
     let items = good("g17 f100 g0 x0 y0 z1\ng5 i0 j3 p0 q-3 x1 y1\nx2 y2 p0 q-3\ng5 i1 j2 p3 q4 x3 y3");
@@ -106,16 +106,16 @@ fn quadratic_splines_have_one_control_point() {
     assert_eq!(items[0].got, Got::Bezier(vec![[25.4, -25.4, 0.0], [50.8, 0.0, 0.0]]));
 }
 
-/// The example of LinuxCNC's manual; its knots by the formula of the manual's reference (Piegl and Tiller).
+/// Five points of order 3 have three spans: the knots by the definition of a clamped uniform vector (Piegl and Tiller).
 #[test]
 fn nurbs_have_the_start_as_first_point_and_clamped_knots() {
-    let items = good("g0 x0 y0\nf10\ng5.2 p2 l3\nx0 y1 p1\nx2 y2 p1\nx2 y0 p1\nx0 y0 p2\ng5.3\ng0 x9");
+    let items = good("g0 x0 y0\nf10\ng5.2 p2 l3\nx1 y3 p1\nx4 y5 p1\nx6 y2 p1\nx3 y-1 p2\ng5.3\ng0 x9");
     assert_eq!(items[1].place, (8, 1));
     assert_eq!(
         items[1].got,
         Got::Nurbs {
             order: 3,
-            points: [[0.0, 0.0], [0.0, 1.0], [2.0, 2.0], [2.0, 0.0], [0.0, 0.0]].map(|[x, y]| [x, y, 0.0]).to_vec(),
+            points: [[0.0, 0.0], [1.0, 3.0], [4.0, 5.0], [6.0, 2.0], [3.0, -1.0]].map(|[x, y]| [x, y, 0.0]).to_vec(),
             weights: vec![2.0, 1.0, 1.0, 1.0, 2.0],
             knots: vec![0.0, 0.0, 0.0, 1.0, 2.0, 3.0, 3.0, 3.0],
         }
