@@ -87,12 +87,12 @@ fn straight(length: f64, feed: f64) -> Path {
     path("line.toml", &text).1
 }
 
-/// A straight move takes what ruckig's time-optimal one takes, to a thousandth. One so short that it never comes to its feed takes up to
-/// 5 % more: its peak is rounded with the jerk that the speed before the rounding allows.
+/// A straight move takes what ruckig's time-optimal one takes, to a thousandth: one that comes to its feed, to its acceleration alone, and
+/// to neither.
 #[test]
 fn a_straight_move_is_ruckigs() {
-    for (length, feed, bar) in
-        [(100.0, 60.0, 1e-3), (300.0, 75.0, 1e-3), (10.0, 75.0, 0.03), (2.0, 75.0, 0.03), (0.3, 75.0, 0.05)]
+    for (length, feed) in
+        [(100.0, 60.0), (300.0, 75.0), (30.0, 75.0), (10.0, 75.0), (5.0, 75.0), (2.0, 75.0), (0.3, 75.0)]
     {
         let limits = limits();
         let ours = plan(&straight(length, feed).pieces, 0.0, &limits, &Manner::USUAL).unwrap().time;
@@ -108,7 +108,7 @@ fn a_straight_move_is_ruckigs() {
         otg.calculate(&input, &mut trajectory).unwrap();
         let theirs = trajectory.get_duration();
         println!("{length} mm at {feed} mm/s: {ours:.5} s, ruckig {theirs:.5} s");
-        assert!(ours / theirs - 1.0 < bar && ours > theirs * (1.0 - 1e-3), "{length} mm: {ours} {theirs}");
+        assert!((ours / theirs - 1.0).abs() < 1e-3, "{length} mm: {ours} {theirs}");
     }
 }
 
