@@ -232,11 +232,12 @@ fn push(all: &mut Vec<PathPiece>, piece: &PathPiece, interval: [f64; 2], law: &L
 
 /// What places bear below their caps.
 pub(super) fn allowed(course: &Course, caps: &[Cap], limits: &Limits, scale: &[f64]) -> Vec<Allowed> {
-    let of = |((place, cap), &scale): ((&Place, &Cap), &f64)| {
-        let place = Place { feed: cap.speed, ..*place };
-        Allowed::at(&place, &limits.with_margin([1.0, scale, 1.0]))
+    let places = &course.places;
+    let of = |k: usize| {
+        let place = Place { feed: caps[k].speed, ..places[k] };
+        Allowed::at(&place, places.get(k + 1), &limits.with_margin([1.0, scale[k], 1.0]))
     };
-    course.places.iter().zip(caps).zip(scale).map(of).collect()
+    (0..places.len()).map(of).collect()
 }
 
 /// The jerk along the way that the axes leave at each place beside what the bend takes.

@@ -19,22 +19,40 @@ pub(super) struct State {
 }
 
 /// The profile with its accelerations from differences: where no jerk is limited, they may step at every place.
+///
+/// Over a step the acceleration goes on as it does to the neighbouring steps, by the less of the two differences, and not at all where they
+/// have different signs.
 pub(super) fn as_it_is(course: &Course, speed: &[f64]) -> Vec<State> {
-    let mean = |k: usize| {
-        let step = course.places.get(k)?.step;
-        (k > 0 && step > 0.0).then(|| (speed[k] * speed[k] - speed[k - 1] * speed[k - 1]) / (2.0 * step))
-    };
-    let sides = (0..speed.len()).map(|k| {
-        let (before, behind) = (mean(k), mean(k + 1));
-        State { speed: speed[k], acceleration: [before.or(behind).unwrap_or(0.0), behind.or(before).unwrap_or(0.0)] }
-    });
-    let mut states: Vec<State> = sides.collect();
+    let places = &course.places;
+    let steps: Vec<usize> = (1..places.len()).filter(|&k| places[k].step > 0.0).collect();
+    let mean = |k: usize| (speed[k] * speed[k] - speed[k - 1] * speed[k - 1]) / (2.0 * places[k].step);
+    let mut states: Vec<State> = speed.iter().map(|&speed| State { speed, acceleration: [f64::NAN; 2] }).collect();
+    for (number, &k) in steps.iter().enumerate() {
+        let here = mean(k);
+        let slope = |before: usize, after: usize| {
+            2.0 * (mean(after) - mean(before)) / (places[before].step + places[after].step)
+        };
+        let before = number.checked_sub(1).map(|before| slope(steps[before], k));
+        let after = steps.get(number + 1).map(|&after| slope(k, after));
+        let slope = match (before, after) {
+            (Some(a), Some(b)) if a * b > 0.0 => a.abs().min(b.abs()) * a.signum(),
+            _ => 0.0,
+        };
+        let half = 0.5 * places[k].step * slope;
+        states[k - 1].acceleration[1] = here - half;
+        states[k].acceleration[0] = here + half;
+    }
+    // Both sides of a node, and both ends.
     for k in 1..states.len() {
-        // Both sides of a node.
-        if course.places[k].step == 0.0 {
+        if places[k].step == 0.0 {
             states[k - 1].acceleration[1] = states[k].acceleration[1];
             states[k].acceleration[0] = states[k - 1].acceleration[0];
         }
+    }
+    for state in &mut states {
+        let [before, behind] = state.acceleration;
+        let other = |a: f64, b: f64| if a.is_nan() { if b.is_nan() { 0.0 } else { b } } else { a };
+        state.acceleration = [other(before, behind), other(behind, before)];
     }
     states
 }
