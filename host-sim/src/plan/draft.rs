@@ -1,7 +1,7 @@
 //! One attempt at a plan: speeds at places within what each may use, what they ask for too much of, and the pieces that make them.
 
 use super::bound::{self, Allowed};
-use super::caps::{Cap, Reason, caps};
+use super::caps::{Bends, Cap, Reason, caps};
 use super::course::{Course, Place};
 use super::law::{self, Law, Parts, Tolerance};
 use super::limits::{JERK_WINDOW, Limits};
@@ -54,8 +54,8 @@ pub(super) struct Draft {
 }
 
 impl Draft {
-    pub(super) fn new(course: Course, limits: &Limits, scale: &[f64]) -> Self {
-        let caps = caps(&course, limits, scale);
+    pub(super) fn new(course: Course, limits: &Limits, bends: Bends, scale: &[f64]) -> Self {
+        let caps = caps(&course, limits, bends, scale);
         let allowed = allowed(&course, &caps, limits, scale);
         let found = bound::within(&course, limits, &allowed);
         let states = if limits.jerk.iter().all(|jerk| jerk.is_infinite()) {

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use shared::pace::PaceLimits;
 use shared::piece::Header;
 
-use super::caps::Reason;
+use super::caps::{Bends, Reason};
 use super::course::Course;
 use super::draft::{Draft, lessen};
 use super::grid;
@@ -104,17 +104,26 @@ pub(super) fn best(pieces: &[PathPiece], weight: f64, limits: &Limits, manner: &
     let used = Plan::used(limits);
     let course = grid::places(pieces, weight, &used, manner);
     let lengths: Vec<f64> = pieces.iter().map(PathPiece::segment_length).collect();
-    let mut scale = vec![1.0; course.places.len()];
-    let mut round = 0;
-    loop {
-        let draft = Draft::new(course.clone(), &used, &scale);
-        round += 1;
-        let over = draft.over(&used, &lengths);
-        if round >= ROUNDS || over.iter().all(|&over| over <= 1.0) {
-            return draft.finish(pieces, &used, over.iter().copied().fold(1.0, f64::max));
+    let drafted = |bends: Bends| {
+        let mut scale = vec![1.0; course.places.len()];
+        let mut round = 0;
+        loop {
+            let draft = Draft::new(course.clone(), &used, bends, &scale);
+            round += 1;
+            let over = draft.over(&used, &lengths);
+            if round >= ROUNDS || over.iter().all(|&over| over <= 1.0) {
+                return draft.finish(pieces, &used, over.iter().copied().fold(1.0, f64::max));
+            }
+            lessen(&mut scale, &over);
         }
-        lessen(&mut scale, &over);
+    };
+    let steady = drafted(Bends::Steady);
+    if limits.jerk.iter().any(|jerk| jerk.is_finite()) {
+        return steady;
     }
+    // Without a jerk smooth bends gain by it, and rugged ones lose in the rounds.
+    let free = drafted(Bends::Free);
+    if free.time < steady.time { free } else { steady }
 }
 
 /// Whether the ends are as fast as they should be.
