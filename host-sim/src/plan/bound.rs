@@ -146,8 +146,7 @@ fn corner(before: &Place, after: &Place, limits: &Limits) -> f64 {
 /// The least time of a course within limits.
 pub fn bound(course: &Course, limits: &Limits) -> Bound {
     let places = &course.places;
-    let allowed: Vec<Allowed> =
-        (0..places.len()).map(|k| Allowed::at(&places[k], places.get(k + 1), limits)).collect();
+    let allowed: Vec<Allowed> = (0..places.len()).map(|k| Allowed::at(&places[k], places.get(k + 1), limits)).collect();
     within(course, limits, &allowed)
 }
 

@@ -53,8 +53,9 @@ pub(super) fn places(pieces: &[PathPiece], weight: f64, limits: &Limits, manner:
     Course::through(pieces, weight, manner, |number, piece| {
         let end = start + coarse.places[start..].iter().take_while(|place| place.piece == number).count();
         // Away from its ends: a line is the same all along.
-        let within =
-            coarse.places[start..end].iter().map(|place| step(place, &alone(place, limits, Bends::Steady, 1.0), jx.min(jy), least));
+        let within = coarse.places[start..end]
+            .iter()
+            .map(|place| step(place, &alone(place, limits, Bends::Steady, 1.0), jx.min(jy), least));
         let longest = within.fold(0.0, f64::max);
         let parts = parts(piece, &coarse.places[start..end], &wanted[start..end], longest);
         start = end;
@@ -72,7 +73,8 @@ fn first_step(limits: &Limits) -> f64 {
 
 fn step(place: &Place, cap: &Cap, jerk: f64, least: f64) -> f64 {
     // Between two places at constant jerk a speed is off its chord by J t^2/8.
-    let time = if jerk.is_finite() { (8.0 * SAG * cap.speed / jerk).sqrt().clamp(0.25 * TIME, TIME) } else { TIME_FREE };
+    let time =
+        if jerk.is_finite() { (8.0 * SAG * cap.speed / jerk).sqrt().clamp(0.25 * TIME, TIME) } else { TIME_FREE };
     let even = STRETCHING * place.stretch * place.stretch / place.stretching.abs();
     (cap.speed * time + least).min(even).min(TURN / place.curvature.abs()).max(cap.speed * SHORTEST)
 }
