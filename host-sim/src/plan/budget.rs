@@ -151,8 +151,8 @@ pub fn within_budget(
     const ATTEMPTS: u32 = 10;
     const SCALED_ALONE: u32 = 2;
     const NEAR: f64 = 0.08;
-    /// How many times slower than without a budget corners and bends are run at the most. What a plant is off by then has other causes
-    /// than speed, and a job that takes so long is no answer.
+    /// How many times slower bends are run than the axes bear, at the most. What a plant is off by then has other causes than speed, and a
+    /// job that takes so long is no answer. A corner may become a rest.
     const CRAWL: f64 = 30.0;
     let (free, plan) = planned(path, limits, manner).map_err(BudgetError::Plan)?;
     let error = contour_error(&free, plant);
@@ -163,16 +163,14 @@ pub fn within_budget(
     let [ax, ay] = limits.acceleration;
     let steepest = ax.hypot(ay);
     let response = Response::of(plant, budget, fastest, steepest);
-    let slowest = Response { corner_step: fastest / CRAWL, centripetal: steepest / (CRAWL * CRAWL) };
+    let gentlest = steepest / (CRAWL * CRAWL);
     let (mut scale, mut gentle) = (1.0, 1.0);
     let mut best: Option<Budgeted> = None;
     let mut least = error;
     for attempt in 0..ATTEMPTS {
-        let step = (response.corner_step * scale).max(slowest.corner_step);
-        let centripetal = (response.centripetal * scale).max(slowest.centripetal);
         let tried = Limits {
-            corner_step: limits.corner_step.map(|limit| limit.min(step)),
-            centripetal: limits.centripetal.min(centripetal),
+            corner_step: limits.corner_step.map(|step| step.min(response.corner_step * scale)),
+            centripetal: limits.centripetal.min((response.centripetal * scale).max(gentlest)),
             acceleration: limits.acceleration.map(|a| a * gentle),
             jerk: limits.jerk.map(|j| j * gentle),
             ..*limits
