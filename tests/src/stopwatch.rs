@@ -1,4 +1,5 @@
-//! The time that work takes: of the processor where the system tells it, so that other work on the machine counts for little.
+//! The time that work takes: of the processor where the system tells it, so that other work on the machine counts for little. It is told
+//! in steps of some ms: what is measured should take a hundred.
 
 use std::fs;
 use std::time::Instant;

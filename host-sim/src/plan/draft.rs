@@ -51,6 +51,8 @@ pub(super) struct Draft {
     course: Course,
     caps: Vec<Cap>,
     states: Vec<State>,
+    /// By what factor all of it is run slower.
+    slower: f64,
 }
 
 impl Draft {
@@ -64,7 +66,22 @@ impl Draft {
             let jerk = along(&course, &found.speed, limits, scale);
             smooth::smooth(&course, &caps, &allowed, &found.speed, &jerk)
         };
-        Self { course, caps, states }
+        Self { course, caps, states, slower: 1.0 }
+    }
+
+    /// All of it so much slower that what asks for too much by a factor does not.
+    pub(super) fn slowed(self, over: f64) -> Self {
+        Self { slower: if over > 1.0 { over.cbrt().max(over.sqrt()) } else { 1.0 }, ..self }
+    }
+
+    /// About the time that it takes, in s.
+    pub(super) fn time(&self) -> f64 {
+        let steps = self.course.places.iter().skip(1).zip(self.states.windows(2));
+        let of = |(place, ends): (&Place, &[State])| match ends {
+            [from, to] if place.step > 0.0 => 2.0 * place.step / (from.speed + to.speed),
+            _ => 0.0,
+        };
+        self.slower * steps.map(of).sum::<f64>()
     }
 
     /// By what factor each place asks for more than it bears; 1 where it does not.
@@ -179,11 +196,11 @@ impl Draft {
         }
     }
 
-    /// The pieces; all of it slower by what it still asks too much.
-    pub(super) fn finish(self, pieces: &[PathPiece], limits: &Limits, over: f64) -> Plan {
+    /// The pieces.
+    pub(super) fn finish(self, pieces: &[PathPiece], limits: &Limits) -> Plan {
         let [ax, ay] = limits.acceleration;
         let tolerance = Tolerance { speed: SPEED_TOLERANCE, acceleration: ACCELERATION_TOLERANCE * ax.min(ay) };
-        let slower = if over > 1.0 { over.cbrt().max(over.sqrt()) } else { 1.0 };
+        let slower = self.slower;
         let (mut planned, mut from, mut time) =
             (Vec::with_capacity(pieces.len()), Vec::with_capacity(pieces.len()), 0.0);
         let mut start = 0;

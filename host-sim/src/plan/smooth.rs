@@ -3,7 +3,8 @@
 //! Two passes let the speed grow, forwards and backwards from every valley, no faster than a jerk allows: each step is exact motion at
 //! constant jerk, up to the acceleration that the place bears. What is left are peaks at which the acceleration drops at once. They are
 //! cut by arcs of constant falling acceleration: with x = v^2, a profile with x'' >= -C is one for which x + D, D'' = C, is convex, so the
-//! largest such profile below x is the convex hull of x + D, less D. Both are linear in the number of places.
+//! largest such profile below x is the convex hull of x + D, less D. C = 2 J/v depends on the speed that comes out: the hull is taken some
+//! times, peak by peak, at last with the steps cut small where it touches the profile. All of it is linear in the number of places.
 
 use super::bound::Allowed;
 use super::caps::{Cap, Reason};
