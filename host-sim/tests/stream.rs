@@ -90,6 +90,31 @@ fn a_job_arrives_and_runs_as_simulated() {
     assert_eq!(streamed["resent"], 0);
 }
 
+/// So it does with a plan, which is within what the router's drives bear, and begins and ends at rest by itself. All of it is queued before it
+/// starts: this controller runs faster than pieces come, and would have to slow down.
+#[test]
+fn a_planned_job_runs_as_simulated() {
+    let text = "units = \"mm\"\nclosed = false\n[feed]\nrate = 3000.0\n\
+        [[segment]]\nline = { start = [100.0, 100.0], to = [140.0, 100.0] }\n\
+        [[segment]]\narc = { to = [140.0, 120.0], centre = [140.0, 110.0], ccw = true }\n";
+    let file = std::path::PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("planned.toml");
+    std::fs::write(&file, text).unwrap();
+    let common = [file.to_str().unwrap(), "--machine", example!("machine.toml"), "--json", "-"];
+    let port = controller(1, false);
+    let streamed = json(&hodograph(&[&["stream", "--plan", "--port", &port, "--from-here"], &common[..]].concat()));
+    let simulated = json(&hodograph(&[&["simulate", "--plan"], &common[..]].concat()));
+    for key in ["setpoint_hash", "ticks", "time_s"] {
+        assert_eq!(streamed[key], simulated[key], "{key}");
+    }
+    assert_eq!((&streamed["sent"], &streamed["resent"]), (&streamed["acknowledged"], &0.into()));
+    // What ran is the plan.
+    let plan = json(&hodograph(&[&["plan"], &common[..]].concat()));
+    let (ran, time) = (streamed["time_s"].as_f64().unwrap(), plan["time_s"].as_f64().unwrap());
+    assert!((ran - time).abs() < 1e-3, "{ran} {time}");
+    let [pieces, planned] = ["pieces", "planned_pieces"].map(|key| plan[key].as_u64().unwrap());
+    assert!(planned > pieces && planned < 63, "{pieces} {planned}");
+}
+
 #[test]
 fn a_monitor_sees_the_controller() {
     let port = controller(1, true);

@@ -11,6 +11,8 @@
 //!
 //! For the link: [`noisy_line`] loses, doubles, reorders, damages and cuts frames; [`link_script`] makes conversations of any bytes, and
 //! [`strict_machine`] stands behind the endpoint and trusts nothing that it is handed. The targets of `fuzz/` use both.
+//!
+//! [`stopwatch`] serves ratios of times.
 #![forbid(unsafe_code)]
 
 pub mod bench;
@@ -28,6 +30,7 @@ pub mod random;
 pub mod run;
 pub mod simple;
 pub mod stock;
+pub mod stopwatch;
 pub mod strict_machine;
 pub mod winding;
 

@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a failed test says where")]
 
-use std::time::Instant;
+use std::process::{Command, Output};
 
 use host_sim::job::Job;
 use host_sim::machine;
@@ -15,6 +15,7 @@ use shared::complex::Complex;
 use shared::curve::{Line, Segment};
 use shared::machine::MachineSettings;
 use shared::piece::Order;
+use tests::stopwatch::Stopwatch;
 
 const MACHINE: &str = include_str!("../../examples/machine.toml");
 const EXAMPLES: [(&str, &str); 4] = [
@@ -87,12 +88,12 @@ fn straight(length: f64, feed: f64) -> Path {
     path("line.toml", &text).1
 }
 
-/// A straight move takes what ruckig's time-optimal one takes, to a thousandth. One so short that it never comes to its feed takes up to
-/// 5 % more: its peak is rounded with the jerk that the speed before the rounding allows.
+/// A straight move takes what ruckig's time-optimal one takes, to a thousandth: one that comes to its feed, to its acceleration alone, and
+/// to neither.
 #[test]
 fn a_straight_move_is_ruckigs() {
-    for (length, feed, bar) in
-        [(100.0, 60.0, 1e-3), (300.0, 75.0, 1e-3), (10.0, 75.0, 0.03), (2.0, 75.0, 0.03), (0.3, 75.0, 0.05)]
+    for (length, feed) in
+        [(100.0, 60.0), (300.0, 75.0), (30.0, 75.0), (10.0, 75.0), (5.0, 75.0), (2.0, 75.0), (0.3, 75.0)]
     {
         let limits = limits();
         let ours = plan(&straight(length, feed).pieces, 0.0, &limits, &Manner::USUAL).unwrap().time;
@@ -108,8 +109,25 @@ fn a_straight_move_is_ruckigs() {
         otg.calculate(&input, &mut trajectory).unwrap();
         let theirs = trajectory.get_duration();
         println!("{length} mm at {feed} mm/s: {ours:.5} s, ruckig {theirs:.5} s");
-        assert!(ours / theirs - 1.0 < bar && ours > theirs * (1.0 - 1e-3), "{length} mm: {ours} {theirs}");
+        assert!((ours / theirs - 1.0).abs() < 1e-3, "{length} mm: {ours} {theirs}");
     }
+}
+
+/// Without a jerk the fan's plan is not slower by more than a hundredth than `toppra`'s time within the same limits
+/// (`tests/peers/toppra_fan.py`, which needs Python and toppra).
+#[test]
+fn a_spline_is_toppras() {
+    let script = concat!(env!("CARGO_MANIFEST_DIR"), "/peers/toppra_fan.py");
+    let is_there = |output: &Output| output.status.success();
+    let Some(found) = Command::new("python3").arg(script).output().ok().filter(is_there) else {
+        println!("SKIPPED: python3 with toppra, scipy and numpy is not here (pip install toppra scipy)");
+        return;
+    };
+    let theirs: f64 = String::from_utf8(found.stdout).unwrap().trim().parse().unwrap();
+    let free = Limits { jerk: [f64::INFINITY; 2], ..limits() };
+    let ours = plan(&path("fan", EXAMPLES[1].1).1.pieces, 0.0, &free, &Manner::USUAL).unwrap().time;
+    println!("fan: {ours:.4} s, toppra {theirs:.4} s");
+    assert!(ours < 1.01 * theirs && ours > theirs * (1.0 - 1e-3), "{ours} {theirs}");
 }
 
 /// A square: through its corners, resting in each, and resting at a node that is none.
@@ -148,7 +166,7 @@ fn a_budget_of_contour_error_is_kept() {
     }
 }
 
-/// Four times the path, four times the work: half as much again at most, for other things that a machine does.
+/// Sixteen times the path, sixteen times the work: twice that at most, for caches that it outgrows. With a power of 1.25 it would fail.
 #[test]
 fn the_work_grows_with_the_path() {
     let piece = straight(1.0, 50.0).pieces[0];
@@ -162,15 +180,18 @@ fn the_work_grows_with_the_path() {
         };
         (0..count).map(line).collect::<Vec<_>>()
     };
+    // Many runs together: the system counts a thread's time in steps of some ms. Neither path is so long that its memory is new in every
+    // run.
+    const PIECES: usize = 128_000;
     let time = |count: usize| {
         let pieces = lines(count);
-        let once = || {
-            let start = Instant::now();
+        let start = Stopwatch::start();
+        for _ in 0..PIECES / count {
             plan(&pieces, 0.0, &limits(), &Manner::USUAL).unwrap();
-            start.elapsed().as_secs_f64()
-        };
-        (0..3).map(|_| once()).fold(f64::INFINITY, f64::min)
+        }
+        start.seconds()
     };
-    let growth = time(80_000) / time(20_000);
-    assert!(growth < 6.0, "{growth}");
+    // The same number of pieces, sixteen times as long in one path.
+    let growth = 16.0 * time(32_000) / time(2_000);
+    assert!(growth < 32.0, "{growth}");
 }

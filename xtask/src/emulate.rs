@@ -37,6 +37,18 @@ pub struct Emulate {
     /// How a tick integrates the feed law: 1, 2, 3 or exact
     #[arg(long, value_name = "ORDER")]
     order: Option<String>,
+    /// Plan the feed within the limits of --machine
+    #[arg(long)]
+    plan: bool,
+    /// Where on the machine the zero of a planned job stands, in the job's units, as 100,50
+    #[arg(long, value_name = "X,Y", allow_hyphen_values = true, requires = "plan")]
+    zero: Option<String>,
+    /// Where a planned job rests: continuous, exact-path or exact-stop
+    #[arg(long, value_name = "MODE", requires = "plan")]
+    mode: Option<String>,
+    /// The largest contour error of a planned job on the built-in mill, in the job's units
+    #[arg(long, value_name = "ERROR", allow_hyphen_values = true, requires = "plan")]
+    contour_error: Option<String>,
     /// Write the result as JSON; `-` is standard output
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
@@ -80,11 +92,17 @@ impl Emulate {
             ("--loop", &self.chosen),
             ("--feed", &self.feed),
             ("--order", &self.order),
+            ("--zero", &self.zero),
+            ("--mode", &self.mode),
+            ("--contour-error", &self.contour_error),
         ];
         for (name, value) in options {
             if let Some(value) = value {
                 hodograph.arg(format!("{name}={value}"));
             }
+        }
+        if self.plan {
+            hodograph.arg("--plan").arg("--machine").arg(&self.machine);
         }
         run(hodograph.arg("--output").arg(&prepared))?;
         Ok(prepared)

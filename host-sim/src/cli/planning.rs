@@ -115,12 +115,14 @@ impl Planning {
         let found = within_budget(path, &limits, &manner, &plant, budget).map_err(|error| match error {
             BudgetError::Plan(error) => unplanned(error),
             BudgetError::Never { error } => {
-                let (least, unit) = (error / mm, job.units.short());
+                let asked = if self.contour_error.is_some() { "--contour-error" } else { name };
+                let (budget, unit) = (budget / mm, job.units.short());
+                let found = error.map_or_else(String::new, |error| format!(", {:.6} {unit} at the least", error / mm));
                 InputError::new(
-                    "--contour-error",
+                    asked,
                     format_args!(
-                        "the plant {plant_name} makes an error of {least:.6} {unit} on this path at the least that was found; allow more, or \
-                         take another plant"
+                        "no plan was found with which the plant {plant_name} keeps {budget} {unit} on this path{found}; allow more, or take \
+                         another plant"
                     ),
                 )
             }

@@ -72,7 +72,7 @@ fn both(source: &Source) -> Result<(MachineSettings, PathSettings), InputError> 
         };
         source.error(&locate(&source.text, error), message)
     })?;
-    if let Some((key, value)) = path.fault() {
+    if let Some((key, value, needed)) = path.fault() {
         let span = DeTable::parse(&source.text)
             .ok()
             .and_then(|document| {
@@ -80,7 +80,7 @@ fn both(source: &Source) -> Result<(MachineSettings, PathSettings), InputError> 
                 Some(value.span())
             })
             .unwrap_or(0..0);
-        return Err(source.error(&span, format_args!("path.{key} is {value}; it must be a number above zero")));
+        return Err(source.error(&span, format_args!("path.{key} is {value}; it must be {needed}")));
     }
     Ok((settings, path))
 }

@@ -17,14 +17,14 @@ pub struct PathSettings {
 }
 
 impl PathSettings {
-    /// A value that is no limit: not a number above zero, or for a corner's step below it.
-    pub(super) fn fault(&self) -> Option<(&'static str, f64)> {
+    /// A value that is no limit, and what would do: a number above zero, or for a corner's step not below it.
+    pub(super) fn fault(&self) -> Option<(&'static str, f64, &'static str)> {
         let above = [("feed", self.feed), ("centripetal", self.centripetal), ("contour_error", self.contour_error)];
         let above = above
             .into_iter()
-            .filter_map(|(key, value)| Some((key, value?)))
-            .find(|&(_, x)| !(x > 0.0 && x.is_finite()));
+            .filter_map(|(key, value)| Some((key, value?, "a number above zero")))
+            .find(|&(_, x, _)| !(x > 0.0 && x.is_finite()));
         let steps = self.corner_step.into_iter().flatten().find(|&x| !(x >= 0.0 && x.is_finite()));
-        above.or(steps.map(|step| ("corner_step", step)))
+        above.or(steps.map(|step| ("corner_step", step, "a number, zero or above")))
     }
 }

@@ -3,7 +3,9 @@
 //! With x = v^2 and u = dv/dt along the way, an axis of direction t bears |v t| <= V and |u t + x kappa n| <= A, both linear in x and u, and
 //! from place to place x grows by 2 u times the step. The pass from the end finds the largest x at each place from which the rest can
 //! be run; the pass from the start takes as much of it as there is. No jerk is limited, so that no plan within the same limits is
-//! faster but for the grid: limits hold at its places, and its error is of the order of a step (test `the_grid_converges`).
+//! faster but for the grid: velocities hold at its places and accelerations in the middle between them (test `the_grid_converges`).
+
+use shared::complex::Complex;
 
 use super::course::{Course, Place};
 use super::limits::Limits;
@@ -24,55 +26,91 @@ struct Line {
     slope: f64,
 }
 
-/// What one place allows: u between lines, and x up to a number.
-pub(super) struct Allowed {
+/// Lines between which u must stay.
+#[derive(Clone, Copy)]
+struct Lines {
     upper: [Line; 2],
     lower: [Line; 2],
+}
+
+/// What one place allows: u at it, u over the step behind it, and x up to a number.
+pub(super) struct Allowed {
+    here: Lines,
+    ahead: Lines,
     most: f64,
 }
 
 /// A direction this small does not move its axis.
 const STILL: f64 = 1e-12;
 
-impl Allowed {
-    pub(super) fn at(place: &Place, limits: &Limits) -> Self {
-        let n = place.direction.left() * place.curvature;
-        let (along, across) = ([place.direction.re, place.direction.im], [n.re, n.im]);
+impl Lines {
+    /// From |c u + n x| <= A of both axes.
+    fn new(c: [f64; 2], n: [f64; 2], limits: &Limits) -> Self {
         let free = |offset: f64| Line { offset, slope: 0.0 };
         let (mut upper, mut lower) = ([free(f64::INFINITY); 2], [free(f64::NEG_INFINITY); 2]);
+        for axis in 0..2 {
+            let (c, n, a) = (c[axis].abs(), n[axis] * c[axis].signum(), limits.acceleration[axis]);
+            if c >= STILL {
+                upper[axis] = Line { offset: a / c, slope: -n / c };
+                lower[axis] = Line { offset: -a / c, slope: -n / c };
+            }
+        }
+        Self { upper, lower }
+    }
+
+    fn most_at(&self, x: f64) -> f64 {
+        self.upper.iter().map(|line| line.offset + line.slope * x).fold(f64::INFINITY, f64::min)
+    }
+
+    fn least_at(&self, x: f64) -> f64 {
+        self.lower.iter().map(|line| line.offset + line.slope * x).fold(f64::NEG_INFINITY, f64::max)
+    }
+}
+
+impl Allowed {
+    /// At a place in front of another one. In the middle of the step between them x is greater by u times the step: |t u + (x + u step) n|
+    /// is asked there, so that the error is of second order.
+    pub(super) fn at(place: &Place, next: Option<&Place>, limits: &Limits) -> Self {
+        let bend = |place: &Place| place.direction.left() * place.curvature;
+        let parts = |z: Complex<f64>| [z.re, z.im];
+        let (along, across) = (parts(place.direction), parts(bend(place)));
+        let here = Lines::new(along, across, limits);
+        let ahead = next.filter(|next| next.step > 0.0).map_or(here, |next| {
+            let direction = (place.direction + next.direction) * 0.5;
+            let across = (bend(place) + bend(next)) * 0.5;
+            Lines::new(parts(direction + across * next.step), parts(across), limits)
+        });
         let mut most = (place.feed * place.feed).min(limits.centripetal / place.curvature.abs());
         for axis in 0..2 {
-            let (t, n, a) = (along[axis].abs(), across[axis] * along[axis].signum(), limits.acceleration[axis]);
-            if t < STILL {
-                most = most.min(a / n.abs());
-                continue;
-            }
-            most = most.min((limits.velocity[axis] / t).powi(2));
-            upper[axis] = Line { offset: a / t, slope: -n / t };
-            lower[axis] = Line { offset: -a / t, slope: -n / t };
+            let t = along[axis].abs();
+            most = if t < STILL {
+                most.min(limits.acceleration[axis] / across[axis].abs())
+            } else {
+                most.min((limits.velocity[axis] / t).powi(2))
+            };
         }
-        Self { upper, lower, most }
+        Self { here, ahead, most }
     }
 
     /// The largest u at x.
     pub(super) fn most_at(&self, x: f64) -> f64 {
-        self.upper.iter().map(|line| line.offset + line.slope * x).fold(f64::INFINITY, f64::min)
+        self.here.most_at(x)
     }
 
     /// The least u at x.
     pub(super) fn least_at(&self, x: f64) -> f64 {
-        self.lower.iter().map(|line| line.offset + line.slope * x).fold(f64::NEG_INFINITY, f64::max)
+        self.here.least_at(x)
     }
 
     /// The largest x from which a step with some allowed u leads to at most `next` and not below 0: a linear program of two unknowns,
     /// solved by asking every pair of an upper and a lower line. None where there is no x.
     fn controllable(&self, step: f64, next: f64) -> Option<f64> {
         if step == 0.0 {
-            return self.within(self.most.min(next), &self.upper, &self.lower);
+            return self.within(self.most.min(next), &self.here.upper, &self.here.lower);
         }
         let twice = 2.0 * step;
-        let [a, b] = self.upper;
-        let [c, d] = self.lower;
+        let [a, b] = self.ahead.upper;
+        let [c, d] = self.ahead.lower;
         let upper = [a, b, Line { offset: next / twice, slope: -1.0 / twice }];
         let lower = [c, d, Line { offset: 0.0, slope: -1.0 / twice }];
         self.within(self.most, &upper, &lower)
@@ -108,7 +146,7 @@ fn corner(before: &Place, after: &Place, limits: &Limits) -> f64 {
 /// The least time of a course within limits.
 pub fn bound(course: &Course, limits: &Limits) -> Bound {
     let places = &course.places;
-    let allowed: Vec<Allowed> = places.iter().map(|place| Allowed::at(place, limits)).collect();
+    let allowed: Vec<Allowed> = (0..places.len()).map(|k| Allowed::at(&places[k], places.get(k + 1), limits)).collect();
     within(course, limits, &allowed)
 }
 
@@ -130,7 +168,7 @@ pub(super) fn within(course: &Course, limits: &Limits, allowed: &[Allowed]) -> B
     for (k, place) in places.iter().enumerate() {
         if k > 0 {
             let before: f64 = x;
-            x = (before + 2.0 * place.step * allowed[k - 1].most_at(before)).min(reachable[k]).max(0.0);
+            x = (before + 2.0 * place.step * allowed[k - 1].ahead.most_at(before)).min(reachable[k]).max(0.0);
             if place.step > 0.0 {
                 time += 2.0 * place.step / (before.sqrt() + x.sqrt());
             }
@@ -225,7 +263,9 @@ mod tests {
             );
             if pair[1].step > 0.0 {
                 let u = (next * next - v * v) / (2.0 * pair[1].step);
-                let a = pair[0].direction * u + pair[0].direction.left() * (pair[0].curvature * v * v);
+                let bend = |place: &Place| place.direction.left() * place.curvature;
+                let direction = (pair[0].direction + pair[1].direction) * 0.5;
+                let a = direction * u + (bend(&pair[0]) + bend(&pair[1])) * (0.25 * (v * v + next * next));
                 assert!(a.re.abs() <= 500.0 * (1.0 + 1e-6) && a.im.abs() <= 500.0 * (1.0 + 1e-6), "{k}: {a:?}");
             }
         }

@@ -35,10 +35,10 @@ pub struct Budgeted {
 pub enum BudgetError {
     /// There is no plan at all.
     Plan(PlanError),
-    /// The plant makes a larger error, in mm, however slowly it goes.
+    /// The plant makes a larger error, in mm, also where it crawls.
     Never {
-        /// The smallest that was found.
-        error: f64,
+        /// The smallest that was found; none where no run came to its end.
+        error: Option<f64>,
     },
 }
 
@@ -151,6 +151,9 @@ pub fn within_budget(
     const ATTEMPTS: u32 = 10;
     const SCALED_ALONE: u32 = 2;
     const NEAR: f64 = 0.08;
+    /// How many times slower bends are run than the axes bear, at the most. What a plant is off by then has other causes than speed, and a
+    /// job that takes so long is no answer. A corner may become a rest.
+    const CRAWL: f64 = 30.0;
     let (free, plan) = planned(path, limits, manner).map_err(BudgetError::Plan)?;
     let error = contour_error(&free, plant);
     let fastest = plan.speed.iter().copied().fold(0.0, f64::max);
@@ -158,14 +161,16 @@ pub fn within_budget(
         return Ok(Budgeted { path: free, plan, limits: *limits, error });
     }
     let [ax, ay] = limits.acceleration;
-    let response = Response::of(plant, budget, fastest, ax.hypot(ay));
+    let steepest = ax.hypot(ay);
+    let response = Response::of(plant, budget, fastest, steepest);
+    let gentlest = steepest / (CRAWL * CRAWL);
     let (mut scale, mut gentle) = (1.0, 1.0);
     let mut best: Option<Budgeted> = None;
-    let mut least = f64::INFINITY;
+    let mut least = error;
     for attempt in 0..ATTEMPTS {
         let tried = Limits {
             corner_step: limits.corner_step.map(|step| step.min(response.corner_step * scale)),
-            centripetal: limits.centripetal.min(response.centripetal * scale),
+            centripetal: limits.centripetal.min((response.centripetal * scale).max(gentlest)),
             acceleration: limits.acceleration.map(|a| a * gentle),
             jerk: limits.jerk.map(|j| j * gentle),
             ..*limits
@@ -188,7 +193,7 @@ pub fn within_budget(
             gentle *= ratio.clamp(0.5, 1.0);
         }
     }
-    best.ok_or(BudgetError::Never { error: least })
+    best.ok_or(BudgetError::Never { error: least.is_finite().then_some(least) })
 }
 
 /// The largest contour error of a path on a plant, in mm.

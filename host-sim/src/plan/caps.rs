@@ -63,10 +63,20 @@ impl Cap {
 /// The part of a jerk that a bend may take: what is left changes the speed.
 const JERK_OF_BEND: f64 = 0.8;
 
+/// Whether a bend is passed no faster than at a speed that could be kept in it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Bends {
+    /// Then there is always the way out of keeping the speed.
+    Steady,
+    /// Faster where slowing down, or speeding up, takes the place of a part of the bend's acceleration.
+    Free,
+}
+
 /// The caps of all places; `scale` is the part of acceleration and jerk that may be used at each.
-pub(super) fn caps(course: &Course, limits: &Limits, scale: &[f64]) -> Vec<Cap> {
+pub(super) fn caps(course: &Course, limits: &Limits, bends: Bends, scale: &[f64]) -> Vec<Cap> {
     let places = &course.places;
-    let mut caps: Vec<Cap> = places.iter().zip(scale).map(|(place, &scale)| alone(place, limits, scale)).collect();
+    let of = |(place, &scale): (&Place, &f64)| alone(place, limits, bends, scale);
+    let mut caps: Vec<Cap> = places.iter().zip(scale).map(of).collect();
     for k in 1..places.len() {
         let (before, after) = (&places[k - 1], &places[k]);
         let scale = scale[k - 1].min(scale[k]);
@@ -103,16 +113,17 @@ pub(super) fn caps(course: &Course, limits: &Limits, scale: &[f64]) -> Vec<Cap> 
 }
 
 /// What one place bears without its neighbours.
-pub(super) fn alone(place: &Place, limits: &Limits, scale: f64) -> Cap {
+pub(super) fn alone(place: &Place, limits: &Limits, bends: Bends, scale: f64) -> Cap {
     let mut cap = Cap { speed: place.feed.min(limits.feed), reason: Reason::Feed };
     let curvature = place.curvature.abs();
     cap.lower((limits.centripetal * scale / curvature).sqrt(), Reason::Centripetal);
     let along = [place.direction.re.abs(), place.direction.im.abs()];
     for axis in 0..2 {
         cap.lower(limits.velocity[axis] / along[axis], Reason::Velocity(axis));
-        // At constant speed: then there is always the way out of keeping it.
-        let across = along[1 - axis] * curvature;
-        cap.lower((limits.acceleration[axis] * scale / across).sqrt(), Reason::Acceleration(axis));
+        if bends == Bends::Steady {
+            let across = along[1 - axis] * curvature;
+            cap.lower((limits.acceleration[axis] * scale / across).sqrt(), Reason::Acceleration(axis));
+        }
         let turning = curvature * curvature * along[axis];
         cap.lower((JERK_OF_BEND * limits.jerk[axis] * scale / turning).cbrt(), Reason::Jerk(axis));
     }

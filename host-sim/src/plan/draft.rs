@@ -1,7 +1,7 @@
 //! One attempt at a plan: speeds at places within what each may use, what they ask for too much of, and the pieces that make them.
 
 use super::bound::{self, Allowed};
-use super::caps::{Cap, Reason, caps};
+use super::caps::{Bends, Cap, Reason, caps};
 use super::course::{Course, Place};
 use super::law::{self, Law, Parts, Tolerance};
 use super::limits::{JERK_WINDOW, Limits};
@@ -23,16 +23,41 @@ const MIDDLE_JERK: f64 = 0.06;
 /// What a step without a law counts as: too much.
 const WITHOUT_LAW: f64 = 1.3;
 
+/// What the law of a step does in its middle.
+#[derive(Clone, Copy)]
+struct Middle {
+    speed: f64,
+    /// Of both axes.
+    acceleration: [f64; 2],
+    /// The time that the whole step takes.
+    duration: f64,
+}
+
+/// The accelerations of both axes at a time, in front of it and behind it.
+struct Sample {
+    /// The place there, or at the end of the step.
+    place: usize,
+    time: f64,
+    acceleration: [[f64; 2]; 2],
+}
+
+/// The larger part that an acceleration is of what the axes bear.
+fn part(acceleration: [f64; 2], limits: &Limits) -> f64 {
+    (acceleration[0].abs() / limits.acceleration[0]).max(acceleration[1].abs() / limits.acceleration[1])
+}
+
 /// One attempt.
 pub(super) struct Draft {
     course: Course,
     caps: Vec<Cap>,
     states: Vec<State>,
+    /// By what factor all of it is run slower.
+    slower: f64,
 }
 
 impl Draft {
-    pub(super) fn new(course: Course, limits: &Limits, scale: &[f64]) -> Self {
-        let caps = caps(&course, limits, scale);
+    pub(super) fn new(course: Course, limits: &Limits, bends: Bends, scale: &[f64]) -> Self {
+        let caps = caps(&course, limits, bends, scale);
         let allowed = allowed(&course, &caps, limits, scale);
         let found = bound::within(&course, limits, &allowed);
         let states = if limits.jerk.iter().all(|jerk| jerk.is_infinite()) {
@@ -41,7 +66,22 @@ impl Draft {
             let jerk = along(&course, &found.speed, limits, scale);
             smooth::smooth(&course, &caps, &allowed, &found.speed, &jerk)
         };
-        Self { course, caps, states }
+        Self { course, caps, states, slower: 1.0 }
+    }
+
+    /// All of it so much slower that what asks for too much by a factor does not.
+    pub(super) fn slowed(self, over: f64) -> Self {
+        Self { slower: if over > 1.0 { over.cbrt().max(over.sqrt()) } else { 1.0 }, ..self }
+    }
+
+    /// About the time that it takes, in s.
+    pub(super) fn time(&self) -> f64 {
+        let steps = self.course.places.iter().skip(1).zip(self.states.windows(2));
+        let of = |(place, ends): (&Place, &[State])| match ends {
+            [from, to] if place.step > 0.0 => 2.0 * place.step / (from.speed + to.speed),
+            _ => 0.0,
+        };
+        self.slower * steps.map(of).sum::<f64>()
     }
 
     /// By what factor each place asks for more than it bears; 1 where it does not.
@@ -49,50 +89,56 @@ impl Draft {
         let accelerations = self.accelerations();
         let mut over: Vec<f64> = accelerations
             .iter()
-            .map(|sides| {
-                let of = |a: &[f64; 2]| (a[0].abs() / limits.acceleration[0]).max(a[1].abs() / limits.acceleration[1]);
-                of(&sides[0]).max(of(&sides[1])).max(1.0)
-            })
+            .map(|sides| part(sides[0], limits).max(part(sides[1], limits)).max(1.0))
             .map(|over| if over < 1.0 + 4e-3 { 1.0 } else { over })
             .collect();
+        let middles = self.middles(lengths);
+        self.steps(limits, &middles, &mut over);
         if limits.jerk.iter().any(|jerk| jerk.is_finite()) {
-            self.jerks(limits, &accelerations, &mut over);
+            self.jerks(limits, &accelerations, &middles, &mut over);
         }
-        self.steps(limits, lengths, &mut over);
         over
     }
 
-    /// What a law asks for in the middle of its step.
-    fn steps(&self, limits: &Limits, lengths: &[f64], over: &mut [f64]) {
-        for (k, pair) in self.course.places.windows(2).enumerate() {
-            let [before, after] = pair else { continue };
+    /// What the law of the step to each place does in its middle; none where there is no step, or no law.
+    fn middles(&self, lengths: &[f64]) -> Vec<Option<Middle>> {
+        let places = &self.course.places;
+        let of = |k: usize| {
+            let (before, after) = (&places[k.checked_sub(1)?], &places[k]);
             if after.step == 0.0 {
+                return None;
+            }
+            let (from, to) = (&self.states[k - 1], &self.states[k]);
+            let way = (after.fraction - before.fraction) * lengths.get(after.piece).copied().unwrap_or(0.0);
+            let law = Law::between(law::contact(before, from, 1), law::contact(after, to, 0), way)?;
+            let [feed, slope, behind] = law.at(0.5 * law.duration);
+            let part = behind / way;
+            let mean = |a: f64, b: f64| a + (b - a) * part;
+            let stretch = mean(before.stretch, after.stretch);
+            let speed = feed * stretch;
+            let along = slope * stretch + mean(before.stretching, after.stretching) * feed * feed;
+            let direction = before.direction + (after.direction - before.direction) * part;
+            let bend = mean(before.curvature, after.curvature) * speed * speed;
+            let a = direction * along + direction.left() * bend;
+            Some(Middle { speed, acceleration: [a.re, a.im], duration: law.duration })
+        };
+        (0..places.len()).map(of).collect()
+    }
+
+    /// Speeds and accelerations in the middle of steps.
+    fn steps(&self, limits: &Limits, middles: &[Option<Middle>], over: &mut [f64]) {
+        for (k, middle) in middles.iter().enumerate().skip(1) {
+            if self.course.places[k].step == 0.0 {
                 continue;
             }
-            let (from, to) = (&self.states[k], &self.states[k + 1]);
-            let way = (after.fraction - before.fraction) * lengths.get(after.piece).copied().unwrap_or(0.0);
-            let asked = match Law::between(law::contact(before, from, 1), law::contact(after, to, 0), way) {
-                Some(law) => {
-                    let [feed, slope, behind] = law.at(0.5 * law.duration);
-                    let part = behind / way;
-                    let mean = |a: f64, b: f64| a + (b - a) * part;
-                    let stretch = mean(before.stretch, after.stretch);
-                    let speed = feed * stretch;
-                    let along = slope * stretch + mean(before.stretching, after.stretching) * feed * feed;
-                    let direction = before.direction + (after.direction - before.direction) * part;
-                    let bend = mean(before.curvature, after.curvature) * speed * speed;
-                    let a = direction * along + direction.left() * bend;
-                    let cap = self.caps[k].speed.max(self.caps[k + 1].speed);
-                    let fast = (speed / cap / (1.0 + MIDDLE_SPEED)).powi(2);
-                    let [ax, ay] = limits.acceleration;
-                    let steep = (a.re.abs() / ax).max(a.im.abs() / ay) / (1.0 + MIDDLE_ACCELERATION);
-                    fast.max(steep)
-                }
-                None => WITHOUT_LAW,
-            };
+            let asked = middle.map_or(WITHOUT_LAW, |middle| {
+                let cap = self.caps[k - 1].speed.max(self.caps[k].speed);
+                let fast = (middle.speed / cap / (1.0 + MIDDLE_SPEED)).powi(2);
+                fast.max(part(middle.acceleration, limits) / (1.0 + MIDDLE_ACCELERATION))
+            });
             if asked > 1.0 {
+                over[k - 1] = over[k - 1].max(asked);
                 over[k] = over[k].max(asked);
-                over[k + 1] = over[k + 1].max(asked);
             }
         }
     }
@@ -109,49 +155,52 @@ impl Draft {
         self.course.places.iter().zip(&self.states).map(of).collect()
     }
 
-    /// Changes of acceleration over the window of a jerk, but across corners.
-    fn jerks(&self, limits: &Limits, accelerations: &[[[f64; 2]; 2]], over: &mut [f64]) {
+    /// Changes of acceleration over the window of a jerk, at places and in the middle of steps, but across corners.
+    fn jerks(&self, limits: &Limits, accelerations: &[[[f64; 2]; 2]], middles: &[Option<Middle>], over: &mut [f64]) {
         let places = &self.course.places;
-        let mut times = Vec::with_capacity(places.len());
-        let mut time = 0.0;
-        for (k, place) in places.iter().enumerate() {
-            if place.step > 0.0 {
-                let (from, to) = (&self.states[k - 1], &self.states[k]);
-                let lasts =
-                    Law::duration([from.speed, from.acceleration[1]], [to.speed, to.acceleration[0]], place.step);
-                time += if lasts.is_finite() { lasts } else { 2.0 * place.step / (from.speed + to.speed) };
-            }
-            times.push(time);
-        }
-        let mut from = 0;
-        for k in 1..places.len() {
+        let mut samples: Vec<Sample> = Vec::with_capacity(2 * places.len());
+        let (mut time, mut from) = (0.0, 0);
+        for k in 0..places.len() {
             if smooth::parts(places, k) {
-                from = k;
-                continue;
+                samples.clear();
+                from = 0;
             }
-            while times[k] - times[from] > JERK_WINDOW && times[k] - times[from + 1] >= JERK_WINDOW {
-                from += 1;
+            if let Some(middle) = middles[k] {
+                let half = 0.5 * middle.duration;
+                samples.push(Sample { place: k, time: time + half, acceleration: [middle.acceleration; 2] });
+                self.window(&samples, &mut from, limits, over);
+                time += middle.duration;
+            } else if k > 0 && places[k].step > 0.0 {
+                time += 2.0 * places[k].step / (self.states[k - 1].speed + self.states[k].speed);
             }
-            // From the place at or before the window's start, so that the time is the window or a little more.
-            let time = (times[k] - times[from]).max(JERK_WINDOW);
-            let asked = (0..2)
-                .map(|axis| {
-                    (accelerations[k][1][axis] - accelerations[from][0][axis]).abs() / (limits.jerk[axis] * time)
-                })
-                .fold(0.0, f64::max);
-            if asked > 1.0 + MIDDLE_JERK {
-                for over in &mut over[from..=k] {
-                    *over = over.max(asked);
-                }
+            samples.push(Sample { place: k, time, acceleration: accelerations[k] });
+            self.window(&samples, &mut from, limits, over);
+        }
+    }
+
+    /// The change of acceleration up to the last sample; `from` is the one at or before the start of its window.
+    fn window(&self, samples: &[Sample], from: &mut usize, limits: &Limits, over: &mut [f64]) {
+        let Some(last) = samples.last() else { return };
+        while last.time - samples[*from].time > JERK_WINDOW && last.time - samples[*from + 1].time >= JERK_WINDOW {
+            *from += 1;
+        }
+        let first = &samples[*from];
+        // The time is the window or a little more.
+        let time = (last.time - first.time).max(JERK_WINDOW);
+        let change = |axis: usize| (last.acceleration[1][axis] - first.acceleration[0][axis]).abs();
+        let asked = (0..2).map(|axis| change(axis) / (limits.jerk[axis] * time)).fold(0.0, f64::max);
+        if asked > 1.0 + MIDDLE_JERK {
+            for over in &mut over[first.place..=last.place] {
+                *over = over.max(asked);
             }
         }
     }
 
-    /// The pieces; all of it slower by what it still asks too much.
-    pub(super) fn finish(self, pieces: &[PathPiece], limits: &Limits, over: f64) -> Plan {
+    /// The pieces.
+    pub(super) fn finish(self, pieces: &[PathPiece], limits: &Limits) -> Plan {
         let [ax, ay] = limits.acceleration;
         let tolerance = Tolerance { speed: SPEED_TOLERANCE, acceleration: ACCELERATION_TOLERANCE * ax.min(ay) };
-        let slower = if over > 1.0 { over.cbrt().max(over.sqrt()) } else { 1.0 };
+        let slower = self.slower;
         let (mut planned, mut from, mut time) =
             (Vec::with_capacity(pieces.len()), Vec::with_capacity(pieces.len()), 0.0);
         let mut start = 0;
@@ -200,11 +249,12 @@ fn push(all: &mut Vec<PathPiece>, piece: &PathPiece, interval: [f64; 2], law: &L
 
 /// What places bear below their caps.
 pub(super) fn allowed(course: &Course, caps: &[Cap], limits: &Limits, scale: &[f64]) -> Vec<Allowed> {
-    let of = |((place, cap), &scale): ((&Place, &Cap), &f64)| {
-        let place = Place { feed: cap.speed, ..*place };
-        Allowed::at(&place, &limits.with_margin([1.0, scale, 1.0]))
+    let places = &course.places;
+    let of = |k: usize| {
+        let place = Place { feed: caps[k].speed, ..places[k] };
+        Allowed::at(&place, places.get(k + 1), &limits.with_margin([1.0, scale[k], 1.0]))
     };
-    course.places.iter().zip(caps).zip(scale).map(of).collect()
+    (0..places.len()).map(of).collect()
 }
 
 /// The jerk along the way that the axes leave at each place beside what the bend takes.

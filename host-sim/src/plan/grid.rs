@@ -5,7 +5,7 @@
 
 use shared::curve::Segment;
 
-use super::caps::{Cap, alone, caps};
+use super::caps::{Bends, Cap, alone, caps};
 use super::course::{Course, Place};
 use super::limits::Limits;
 use super::manner::Manner;
@@ -13,6 +13,9 @@ use crate::path::PathPiece;
 
 /// The time that a step takes at most, in s.
 const TIME: f64 = 4e-3;
+
+/// The same where no jerk is limited: an acceleration may change from one step to the next.
+const TIME_FREE: f64 = 2e-3;
 
 /// The time that a step takes at least, in s: a quarter of a tick, in which nobody could see more of it.
 const SHORTEST: f64 = 0.25 * shared::TICK as f64;
@@ -41,7 +44,7 @@ pub(super) fn places(pieces: &[PathPiece], weight: f64, limits: &Limits, manner:
         Segment::Line(_) => vec![0.0, 1.0],
         _ => (0..=LOOKS).map(|k| f64::from(k) / f64::from(LOOKS)).collect(),
     });
-    let caps = caps(&coarse, limits, &vec![1.0; coarse.places.len()]);
+    let caps = caps(&coarse, limits, Bends::Steady, &vec![1.0; coarse.places.len()]);
     let least = first_step(limits);
     let [jx, jy] = limits.jerk;
     let wanted: Vec<f64> =
@@ -50,8 +53,9 @@ pub(super) fn places(pieces: &[PathPiece], weight: f64, limits: &Limits, manner:
     Course::through(pieces, weight, manner, |number, piece| {
         let end = start + coarse.places[start..].iter().take_while(|place| place.piece == number).count();
         // Away from its ends: a line is the same all along.
-        let within =
-            coarse.places[start..end].iter().map(|place| step(place, &alone(place, limits, 1.0), jx.min(jy), least));
+        let within = coarse.places[start..end]
+            .iter()
+            .map(|place| step(place, &alone(place, limits, Bends::Steady, 1.0), jx.min(jy), least));
         let longest = within.fold(0.0, f64::max);
         let parts = parts(piece, &coarse.places[start..end], &wanted[start..end], longest);
         start = end;
@@ -69,7 +73,8 @@ fn first_step(limits: &Limits) -> f64 {
 
 fn step(place: &Place, cap: &Cap, jerk: f64, least: f64) -> f64 {
     // Between two places at constant jerk a speed is off its chord by J t^2/8.
-    let time = if jerk.is_finite() { (8.0 * SAG * cap.speed / jerk).sqrt().clamp(0.25 * TIME, TIME) } else { TIME };
+    let time =
+        if jerk.is_finite() { (8.0 * SAG * cap.speed / jerk).sqrt().clamp(0.25 * TIME, TIME) } else { TIME_FREE };
     let even = STRETCHING * place.stretch * place.stretch / place.stretching.abs();
     (cap.speed * time + least).min(even).min(TURN / place.curvature.abs()).max(cap.speed * SHORTEST)
 }

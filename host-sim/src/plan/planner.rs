@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use shared::pace::PaceLimits;
 use shared::piece::Header;
 
-use super::caps::Reason;
+use super::caps::{Bends, Reason};
 use super::course::Course;
 use super::draft::{Draft, lessen};
 use super::grid;
@@ -18,6 +18,9 @@ const USED: [f64; 3] = [0.999, 0.994, 0.96];
 
 /// How often places where a plan asks for too much are given less.
 const ROUNDS: usize = 12;
+
+/// The part of a time that is worth running bends faster than steadily.
+const GAIN: f64 = 1e-3;
 
 /// A planned motion.
 #[derive(Clone, Debug)]
@@ -104,17 +107,29 @@ pub(super) fn best(pieces: &[PathPiece], weight: f64, limits: &Limits, manner: &
     let used = Plan::used(limits);
     let course = grid::places(pieces, weight, &used, manner);
     let lengths: Vec<f64> = pieces.iter().map(PathPiece::segment_length).collect();
-    let mut scale = vec![1.0; course.places.len()];
-    let mut round = 0;
-    loop {
-        let draft = Draft::new(course.clone(), &used, &scale);
-        round += 1;
-        let over = draft.over(&used, &lengths);
-        if round >= ROUNDS || over.iter().all(|&over| over <= 1.0) {
-            return draft.finish(pieces, &used, over.iter().copied().fold(1.0, f64::max));
+    let draft = |bends: Bends, scale: &[f64]| Draft::new(course.clone(), &used, bends, scale);
+    let settled = |bends: Bends| {
+        let mut scale = vec![1.0; course.places.len()];
+        let mut round = 0;
+        loop {
+            let draft = draft(bends, &scale);
+            round += 1;
+            let over = draft.over(&used, &lengths);
+            if round >= ROUNDS || over.iter().all(|&over| over <= 1.0) {
+                return draft.slowed(over.iter().copied().fold(1.0, f64::max));
+            }
+            lessen(&mut scale, &over);
         }
-        lessen(&mut scale, &over);
+    };
+    let steady = settled(Bends::Steady);
+    // Without a jerk smooth bends gain by being free, and rugged ones lose it in the rounds.
+    let is_worth_it = |free: f64| free < steady.time() * (1.0 - GAIN);
+    let has_jerk = limits.jerk.iter().any(|jerk| jerk.is_finite());
+    if has_jerk || !is_worth_it(draft(Bends::Free, &vec![1.0; course.places.len()]).time()) {
+        return steady.finish(pieces, &used);
     }
+    let free = settled(Bends::Free);
+    if is_worth_it(free.time()) { free.finish(pieces, &used) } else { steady.finish(pieces, &used) }
 }
 
 /// Whether the ends are as fast as they should be.

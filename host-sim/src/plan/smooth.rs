@@ -3,7 +3,8 @@
 //! Two passes let the speed grow, forwards and backwards from every valley, no faster than a jerk allows: each step is exact motion at
 //! constant jerk, up to the acceleration that the place bears. What is left are peaks at which the acceleration drops at once. They are
 //! cut by arcs of constant falling acceleration: with x = v^2, a profile with x'' >= -C is one for which x + D, D'' = C, is convex, so the
-//! largest such profile below x is the convex hull of x + D, less D. Both are linear in the number of places.
+//! largest such profile below x is the convex hull of x + D, less D. C = 2 J/v depends on the speed that comes out: the hull is taken some
+//! times, peak by peak, at last with the steps cut small where it touches the profile. All of it is linear in the number of places.
 
 use super::bound::Allowed;
 use super::caps::{Cap, Reason};
@@ -19,22 +20,40 @@ pub(super) struct State {
 }
 
 /// The profile with its accelerations from differences: where no jerk is limited, they may step at every place.
+///
+/// Over a step the acceleration goes on as it does to the neighbouring steps, by the less of the two differences, and not at all where they
+/// have different signs.
 pub(super) fn as_it_is(course: &Course, speed: &[f64]) -> Vec<State> {
-    let mean = |k: usize| {
-        let step = course.places.get(k)?.step;
-        (k > 0 && step > 0.0).then(|| (speed[k] * speed[k] - speed[k - 1] * speed[k - 1]) / (2.0 * step))
-    };
-    let sides = (0..speed.len()).map(|k| {
-        let (before, behind) = (mean(k), mean(k + 1));
-        State { speed: speed[k], acceleration: [before.or(behind).unwrap_or(0.0), behind.or(before).unwrap_or(0.0)] }
-    });
-    let mut states: Vec<State> = sides.collect();
+    let places = &course.places;
+    let steps: Vec<usize> = (1..places.len()).filter(|&k| places[k].step > 0.0).collect();
+    let mean = |k: usize| (speed[k] * speed[k] - speed[k - 1] * speed[k - 1]) / (2.0 * places[k].step);
+    let mut states: Vec<State> = speed.iter().map(|&speed| State { speed, acceleration: [f64::NAN; 2] }).collect();
+    for (number, &k) in steps.iter().enumerate() {
+        let here = mean(k);
+        let slope = |before: usize, after: usize| {
+            2.0 * (mean(after) - mean(before)) / (places[before].step + places[after].step)
+        };
+        let before = number.checked_sub(1).map(|before| slope(steps[before], k));
+        let after = steps.get(number + 1).map(|&after| slope(k, after));
+        let slope = match (before, after) {
+            (Some(a), Some(b)) if a * b > 0.0 => a.abs().min(b.abs()) * a.signum(),
+            _ => 0.0,
+        };
+        let half = 0.5 * places[k].step * slope;
+        states[k - 1].acceleration[1] = here - half;
+        states[k].acceleration[0] = here + half;
+    }
+    // Both sides of a node, and both ends.
     for k in 1..states.len() {
-        // Both sides of a node.
-        if course.places[k].step == 0.0 {
+        if places[k].step == 0.0 {
             states[k - 1].acceleration[1] = states[k].acceleration[1];
             states[k].acceleration[0] = states[k - 1].acceleration[0];
         }
+    }
+    for state in &mut states {
+        let [before, behind] = state.acceleration;
+        let other = |a: f64, b: f64| if a.is_nan() { if b.is_nan() { 0.0 } else { b } } else { a };
+        state.acceleration = [other(before, behind), other(behind, before)];
     }
     states
 }
@@ -154,81 +173,205 @@ fn round_peaks(course: &Course, speed: &[f64], known: &[Option<f64>], jerk: &[f6
     states
 }
 
-/// A point of the way: one place, or the two that stand at a node.
+/// A point of the way: one place, the two that stand at a node, or one within a step.
+#[derive(Clone, Copy)]
 struct Point {
     /// The way to it.
     way: f64,
+    /// The jerk on the way to it.
+    jerk: f64,
+    /// The speed before the rounding, and after it.
+    speed: [f64; 2],
+    /// The acceleration before the rounding, and that of the hull where the hull lowers a step beside it.
+    acceleration: (f64, Option<f64>),
     /// D and its slope.
     d: [f64; 2],
-    /// v^2.
-    square: f64,
-    /// The acceleration that a pass knows.
-    known: Option<f64>,
-    first: usize,
-    last: usize,
+    /// The slope of the hull over the step to it, where the hull lowers that.
+    rise: Option<f64>,
+    /// The places: none within a step.
+    places: Option<[usize; 2]>,
 }
+
+impl Point {
+    fn height(&self) -> f64 {
+        self.speed[0] * self.speed[0] + self.d[0]
+    }
+}
+
+/// How often a peak is rounded: each time with the jerk that its speeds then allow.
+const ROUNDINGS: usize = 4;
+
+/// The part of a change of speeds that the next rounding goes by. Lower speeds make a sharper peak and that makes higher speeds: each
+/// whole change is taken back by about a third in the next one.
+const DAMPING: f64 = 0.75;
+
+/// Steps near a point of contact, on each side of it, and the parts that each of them is cut into: the hull leaves the profile at a point, and
+/// there the acceleration is off by what the jerk makes on a part.
+const CONTACT: usize = 2;
+const CUTS: usize = 8;
 
 /// One stretch between corners: places `from..to`.
 fn hull(course: &Course, states: &mut [State], known: &[Option<f64>], jerk: &[f64], from: usize, to: usize) {
+    let mut points = points(course, states, known, jerk, from, to);
+    let mut chain = Vec::with_capacity(points.len());
+    lower(&mut points, &mut chain);
+    // Peak by peak once more, from where the first rounding, which is the gentlest, leaves the profile.
+    let mut start = 0;
+    while start < points.len() {
+        let lowered = points[start..].iter().take_while(|point| point.rise.is_some()).count();
+        if lowered > 0 {
+            let (low, high) = (start.saturating_sub(CONTACT), (start + lowered + 1).min(points.len()));
+            round(&mut points[low..high], &mut chain);
+        }
+        start += lowered + 1;
+    }
+    for point in &points {
+        let Some([first, last]) = point.places else { continue };
+        let acceleration = point.acceleration.1.unwrap_or(point.acceleration.0);
+        states[first..=last].fill(State { speed: point.speed[1], acceleration: [acceleration; 2] });
+    }
+}
+
+fn points(
+    course: &Course,
+    states: &[State],
+    known: &[Option<f64>],
+    jerk: &[f64],
+    from: usize,
+    to: usize,
+) -> Vec<Point> {
     let mut points: Vec<Point> = Vec::with_capacity(to - from);
-    let (mut way, mut slope, mut d) = (0.0, 0.0, 0.0);
+    let mut way = 0.0;
     for k in from..to {
         let step = course.places[k].step;
         if k > from && step == 0.0 {
-            if let Some(point) = points.last_mut() {
-                point.last = k;
+            if let Some(Point { places: Some([_, last]), .. }) = points.last_mut() {
+                *last = k;
             }
             continue;
         }
-        if k > from {
-            // D'' = 2 J/v, with v = sqrt(x) and x linear: its mean over the step is 4 J/(v0 + v1), which is finite at a rest.
-            let bend = 4.0 * jerk[k] / (states[k - 1].speed + states[k].speed);
-            d += step * (slope + 0.5 * bend * step);
-            slope += bend * step;
-            way += step;
-        }
-        let square = states[k].speed * states[k].speed;
-        points.push(Point { way, d: [d, slope], square, known: known[k], first: k, last: k });
+        way += if k > from { step } else { 0.0 };
+        points.push(Point {
+            way,
+            jerk: jerk[k],
+            speed: [states[k].speed; 2],
+            acceleration: (known[k].unwrap_or(f64::NAN), None),
+            d: [0.0; 2],
+            rise: None,
+            places: Some([k; 2]),
+        });
     }
-    let height = |point: &Point| point.square + point.d[0];
-    let mut chain: Vec<usize> = Vec::with_capacity(points.len());
+    // Where no pass made the profile, it is a parabola through the neighbours.
+    for k in 0..points.len() {
+        if points[k].acceleration.0.is_nan() {
+            points[k].acceleration.0 = parabola(&points, k);
+        }
+    }
+    points
+}
+
+/// Rounds a peak that was rounded once, and whatever else the hull lowers there.
+fn round(peak: &mut [Point], chain: &mut Vec<usize>) {
+    let mut assumed: Vec<f64> = peak.iter().map(|point| point.speed[0]).collect();
+    let mut assume = |peak: &mut [Point]| {
+        for (assumed, point) in assumed.iter_mut().zip(peak.iter_mut()) {
+            *assumed += DAMPING * (point.speed[1] - *assumed);
+            point.speed[1] = *assumed;
+            point.rise = None;
+        }
+    };
+    for _ in 2..ROUNDINGS {
+        assume(peak);
+        lower(peak, chain);
+    }
+    // Steps that are lowered, or not, unlike a neighbour of theirs.
+    let is_lowered = |k: usize| peak.get(k).is_some_and(|point| point.rise.is_some());
+    let is_contact = |k: usize| (k.saturating_sub(CONTACT)..k + CONTACT).any(|k| is_lowered(k) != is_lowered(k + 1));
+    let cuts: Vec<bool> = (0..peak.len()).map(is_contact).collect();
+    assume(peak);
+    let mut fine: Vec<Point> = Vec::with_capacity(peak.len() + 4 * CONTACT * CUTS);
+    for (k, point) in peak.iter().enumerate() {
+        if k > 0 && cuts[k] {
+            fine.extend((1..CUTS).map(|cut| between(&peak[k - 1], point, cut as f64 / CUTS as f64)));
+        }
+        fine.push(*point);
+    }
+    lower(&mut fine, chain);
+    let mut real = peak.iter_mut();
+    for (k, point) in fine.iter().enumerate() {
+        if point.places.is_none() {
+            continue;
+        }
+        if let Some(real) = real.next() {
+            *real = *point;
+            let on_hull = |rise: f64| 0.5 * (rise - point.d[1]);
+            let behind = fine.get(k + 1).and_then(|point| point.rise).map(on_hull);
+            let elsewhere = point.acceleration.0;
+            real.acceleration.1 = match (point.rise.map(on_hull), behind) {
+                (None, None) => None,
+                (before, behind) => Some(0.5 * (before.unwrap_or(elsewhere) + behind.unwrap_or(elsewhere))),
+            };
+        }
+    }
+}
+
+/// A point within the step from one to another: v^2 is a cubic of the way.
+fn between(before: &Point, after: &Point, part: f64) -> Point {
+    let step = after.way - before.way;
+    let mean = |a: f64, b: f64| a + (b - a) * part;
+    let squares = [before, after].map(|point| point.speed[0] * point.speed[0]);
+    // Off the chord, by the slopes 2 a at both ends.
+    let chord = squares[1] - squares[0];
+    let [low, high] = [2.0 * before.acceleration.0 * step - chord, chord - 2.0 * after.acceleration.0 * step];
+    let rest = 1.0 - part;
+    let square = mean(squares[0], squares[1]) + part * rest * (rest * low + part * high);
+    Point {
+        way: mean(before.way, after.way),
+        speed: [square.max(0.0).sqrt(), mean(before.speed[1], after.speed[1])],
+        places: None,
+        rise: None,
+        ..*after
+    }
+}
+
+/// Lowers points to the hull: of the first speeds, with the jerk that the second ones allow.
+fn lower(points: &mut [Point], chain: &mut Vec<usize>) {
+    let (mut slope, mut d) = (0.0, 0.0);
+    for k in 1..points.len() {
+        let step = points[k].way - points[k - 1].way;
+        // D'' = 2 J/v, with v = sqrt(x) and x linear: its mean over the step is 4 J/(v0 + v1), which is finite at a rest.
+        let bend = 4.0 * points[k].jerk / (points[k - 1].speed[1] + points[k].speed[1]);
+        d += step * (slope + 0.5 * bend * step);
+        slope += bend * step;
+        points[k].d = [d, slope];
+    }
+    chain.clear();
     for (k, point) in points.iter().enumerate() {
         while let [.., i, j] = chain[..] {
             let (before, middle) = (&points[i], &points[j]);
             let (left, right) = (middle.way - before.way, point.way - middle.way);
             // By more than its rounding above the chord: places on it stay.
-            let above = (height(middle) - height(before)) * right - (height(point) - height(middle)) * left;
-            if above <= 1e-12 * (height(before) + height(point)) * (left + right) {
+            let above = (middle.height() - before.height()) * right - (point.height() - middle.height()) * left;
+            if above <= 1e-12 * (before.height() + point.height()) * (left + right) {
                 break;
             }
             chain.pop();
         }
         chain.push(k);
     }
-    // The slope of the hull over each step that it lowers, by the point behind it.
-    let mut rises: Vec<Option<f64>> = vec![None; points.len() + 1];
+    points.iter_mut().for_each(|point| point.speed[1] = point.speed[0]);
     for pair in chain.windows(2) {
         let &[i, j] = pair else { continue };
         if j == i + 1 {
             continue;
         }
-        let start = height(&points[i]);
-        let rise = (height(&points[j]) - start) / (points[j].way - points[i].way);
-        rises[i + 1..=j].fill(Some(rise));
-        let origin = points[i].way;
+        let (origin, start) = (points[i].way, points[i].height());
+        let rise = (points[j].height() - start) / (points[j].way - origin);
+        points[i + 1..=j].iter_mut().for_each(|point| point.rise = Some(rise));
         for point in &mut points[i + 1..j] {
             let lowered = start + rise * (point.way - origin) - point.d[0];
-            point.square = point.square.min(lowered.max(0.0));
+            point.speed[1] = point.speed[0].min(lowered.max(0.0).sqrt());
         }
-    }
-    for k in 0..points.len() {
-        // On the hull its own slope; elsewhere what the pass knows that made the profile, or a parabola through the neighbours.
-        let elsewhere = points[k].known.unwrap_or_else(|| parabola(&points, k));
-        let [before, behind] =
-            [k, k + 1].map(|step| rises[step].map_or(elsewhere, |rise| 0.5 * (rise - points[k].d[1])));
-        // Where the hull leaves the profile, the point of contact lies within a step: the mean is nearer to it than either.
-        let state = State { speed: points[k].square.sqrt(), acceleration: [0.5 * (before + behind); 2] };
-        states[points[k].first..=points[k].last].fill(state);
     }
 }
 
@@ -237,7 +380,7 @@ fn parabola(points: &[Point], k: usize) -> f64 {
     let mean = |i: usize, j: usize| {
         let (from, to) = (points.get(i)?, points.get(j)?);
         let way = to.way - from.way;
-        Some(((to.square - from.square) / (2.0 * way), way))
+        Some(((to.speed[1] + from.speed[1]) * (to.speed[1] - from.speed[1]) / (2.0 * way), way))
     };
     match (k.checked_sub(1).and_then(|before| mean(before, k)), mean(k, k + 1)) {
         (Some((before, back)), Some((behind, on))) => (before * on + behind * back) / (back + on),

@@ -9,7 +9,7 @@
 use std::collections::VecDeque;
 
 use super::bound;
-use super::caps::caps;
+use super::caps::{Bends, caps};
 use super::draft::allowed;
 use super::limits::Limits;
 use super::manner::Manner;
@@ -118,7 +118,7 @@ impl<I: Iterator<Item = PathPiece>> Streamed<I> {
     fn sure(&self, plan: &Plan, reach: f64) -> usize {
         let scale = vec![1.0; plan.course.places.len()];
         let mut course = plan.course.clone();
-        let caps = caps(&course, &self.limits, &scale);
+        let caps = caps(&course, &self.limits, Bends::Steady, &scale);
         let allowed = allowed(&course, &caps, &self.limits, &scale);
         let resting = bound::within(&course, &self.limits, &allowed).speed;
         course.ends[1] = None;
