@@ -10,6 +10,7 @@
 //! | [`contour`] | the part's curve: segments and nodes |
 //! | [`offset`] | the exact trimmed offset of a contour |
 //! | [`spline`] | splines through points, and ways to drive them at a constant feed |
+//! | [`fit`] | curves for the polylines of programs |
 //! | [`job`] | what a person wants: contour, offset, feed; the contour form |
 //! | [`path`] | the exact curves of the tool's centre in f64, and the pieces that a controller gets of them |
 //! | [`approach`] | the way to where a job begins |
@@ -32,6 +33,7 @@
 pub mod approach;
 pub mod contour;
 pub mod controller;
+pub mod fit;
 pub mod input;
 pub mod job;
 pub mod machine;

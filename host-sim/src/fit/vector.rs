@@ -1,0 +1,76 @@
+//! Points and directions in space.
+
+use std::ops::{Add, Mul, Neg, Sub};
+
+/// x, y and z, in mm where it is a point.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Vector(pub [f64; 3]);
+
+impl Vector {
+    /// The scalar product.
+    pub fn dot(self, other: Self) -> f64 {
+        self.0[0] * other.0[0] + self.0[1] * other.0[1] + self.0[2] * other.0[2]
+    }
+
+    /// The vector product.
+    pub fn cross(self, other: Self) -> Self {
+        let ([a, b, c], [d, e, f]) = (self.0, other.0);
+        Self([b * f - c * e, c * d - a * f, a * e - b * d])
+    }
+
+    /// The length.
+    pub fn norm(self) -> f64 {
+        self.dot(self).sqrt()
+    }
+
+    /// The direction; none of a vector without length.
+    pub fn unit(self) -> Option<Self> {
+        let norm = self.norm();
+        (norm > 0.0 && norm.is_finite()).then(|| self * (1.0 / norm))
+    }
+
+    /// The point at a part of the way to another.
+    pub fn toward(self, other: Self, part: f64) -> Self {
+        self + (other - self) * part
+    }
+
+    /// The distance from the segment between two points.
+    pub fn from_segment(self, from: Self, to: Self) -> f64 {
+        let (along, off) = (to - from, self - from);
+        let square = along.dot(along);
+        let part = if square > 0.0 { (off.dot(along) / square).clamp(0.0, 1.0) } else { 0.0 };
+        (off - along * part).norm()
+    }
+}
+
+impl Add for Vector {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        Self([self.0[0] + other.0[0], self.0[1] + other.0[1], self.0[2] + other.0[2]])
+    }
+}
+
+impl Sub for Vector {
+    type Output = Self;
+
+    fn sub(self, other: Self) -> Self {
+        Self([self.0[0] - other.0[0], self.0[1] - other.0[1], self.0[2] - other.0[2]])
+    }
+}
+
+impl Mul<f64> for Vector {
+    type Output = Self;
+
+    fn mul(self, factor: f64) -> Self {
+        Self(self.0.map(|x| x * factor))
+    }
+}
+
+impl Neg for Vector {
+    type Output = Self;
+
+    fn neg(self) -> Self {
+        self * -1.0
+    }
+}
