@@ -26,7 +26,7 @@ const STILL: f64 = 1e-6;
 /// How often a piece of a curve is halved where its hull is too far from its segment.
 const HALVINGS: u32 = 3;
 
-/// Walks along a curve and the polyline whose ends are its ends. `feet` are guesses of the vertices' foot points from 0 to 1, which are
+/// Walks along a curve and the polyline whose ends stand for its ends. `feet` are guesses of the vertices' foot points from 0 to 1, which are
 /// improved. None as soon as something is farther off than `most`.
 pub(super) fn walk<const N: usize>(
     curve: &Bezier<N>,
@@ -36,8 +36,9 @@ pub(super) fn walk<const N: usize>(
     most: f64,
 ) -> Option<Walk> {
     let (mut rest, mut behind) = (*curve, 0.0);
-    let mut found = Walk { deviation: 0.0, vertices: 0.0 };
     let last = points.len() - 1;
+    let ends = (curve.points[0] - points[0]).norm().max((curve.points[N - 1] - points[last]).norm());
+    let mut found = Walk { deviation: ends, vertices: ends };
     for k in 1..last {
         let foot = foot(curve, points[k], feet[k]).clamp(behind, 1.0);
         feet[k] = foot;

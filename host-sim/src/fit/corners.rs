@@ -19,6 +19,10 @@ pub(super) enum Vertex {
     Corner,
 }
 
+/// The angle in radians from which on a straight segment does not go on smoothly: the first chord of an arc that begins there turns by half as
+/// much as the others, and an arc of so few chords is nobody's curve.
+const ABRUPT: f64 = 0.4;
+
 /// The vertices of a polyline without repeated points.
 pub(super) fn vertices(points: &[Vector], tolerance: f64) -> Vec<Vertex> {
     let of = |k: usize| {
@@ -28,10 +32,16 @@ pub(super) fn vertices(points: &[Vector], tolerance: f64) -> Vec<Vertex> {
         match sagittas(before, points[k], *after).map(|sagitta| sagitta > tolerance) {
             [false, false] => Vertex::Smooth,
             [true, true] => Vertex::Corner,
-            [before, _] => Vertex::Tangent { before },
+            [straight, _] if turn(before, points[k], *after) < ABRUPT => Vertex::Tangent { before: straight },
+            _ => Vertex::Corner,
         }
     };
     (0..points.len()).map(of).collect()
+}
+
+fn turn(a: Vector, b: Vector, c: Vector) -> f64 {
+    let (before, after) = (b - a, c - b);
+    before.cross(after).norm().atan2(before.dot(after))
 }
 
 /// How far the arc through three points leaves the chords between them.

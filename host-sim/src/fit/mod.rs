@@ -10,15 +10,25 @@
 //! | `tangent` | its tangent at a vertex |
 //! | `conditions` | both conditions on a curve (SA 1, SA 2), as an upper bound |
 //! | `piecewise` | cubics with common tangents, as published |
+//! | `polyline`, `band` | a polyline by the way along it; least squares of splines |
+//! | [`bspline`] | cubic B-splines with continuous curvature (SA 5) |
+//! | [`ph`] | PH quintics with continuous curvature |
 
+mod band;
+pub mod bspline;
 mod conditions;
 mod corners;
 pub mod curve;
+pub mod ph;
 mod piecewise;
+mod polyline;
 mod tangent;
 pub mod vector;
 
+use corners::Vertex;
 use curve::{Bezier, Cubic};
+use ph::FlatPh;
+use polyline::Polyline;
 use vector::Vector;
 
 /// What is laid through a polyline.
@@ -26,6 +36,10 @@ use vector::Vector;
 pub enum Kind {
     /// Cubics with common tangents.
     Bezier,
+    /// Cubic B-splines, with continuous curvature.
+    Bspline,
+    /// PH quintics with continuous curvature; cubic B-splines where the way is not in a plane across z.
+    Ph,
 }
 
 /// One curve of a fit.
@@ -35,6 +49,8 @@ pub enum Curve {
     Line(Bezier<2>),
     /// A cubic.
     Cubic(Cubic),
+    /// A PH quintic.
+    Ph(FlatPh),
 }
 
 /// A part of a fit.
@@ -53,7 +69,46 @@ pub fn fit(points: &[Vector], kind: Kind, tolerance: f64) -> Vec<Part> {
     if points.len() < 2 {
         return Vec::new();
     }
-    match kind {
-        Kind::Bezier => piecewise::fit(points, tolerance),
+    if kind == Kind::Bezier {
+        return piecewise::fit(points, tolerance);
+    }
+    let kinds = corners::vertices(points, tolerance);
+    let mut parts = Vec::new();
+    let mut from = 0;
+    for to in (1..points.len()).filter(|&k| kinds[k] == Vertex::Corner) {
+        smooth(points, [from, to], kind, tolerance, &mut parts);
+        from = to;
+    }
+    parts
+}
+
+/// Fits the vertices between two corners. Where a vertex turns out to be a corner, both sides of it.
+fn smooth(points: &[Vector], ends: [usize; 2], kind: Kind, tolerance: f64, parts: &mut Vec<Part>) {
+    let mut open = vec![ends];
+    while let Some([from, to]) = open.pop() {
+        let run = &points[from..=to];
+        if to == from + 1 {
+            let line = Bezier { points: [run[0], run[1]] };
+            parts.push(Part { curve: Curve::Line(line), vertices: [from, to], deviation: 0.0 });
+            continue;
+        }
+        let line = Polyline::new(run);
+        let is_flat = run.iter().all(|point| point.0[2] == run[0].0[2]);
+        let corner = if kind == Kind::Ph && is_flat {
+            ph::fit(&line, from, tolerance, parts)
+        } else {
+            bspline::fit(&line, tolerance).map(|(spline, deviations)| {
+                let spans = spline.breaks().windows(2).zip(deviations).enumerate();
+                parts.extend(spans.map(|(k, (ways, deviation))| {
+                    let vertex = |way: f64, is_end: bool| from + line.segment(way) + usize::from(is_end);
+                    let is_last = ways[1] >= line.length();
+                    let vertices = [vertex(ways[0], false), vertex(ways[1], is_last)];
+                    Part { curve: Curve::Cubic(spline.span(k)), vertices, deviation }
+                }));
+            })
+        };
+        if let Err(corner) = corner {
+            open.extend([[from + corner, to], [from, from + corner]]);
+        }
     }
 }

@@ -113,7 +113,7 @@ impl<'a> Run<'a> {
 }
 
 /// The longest success from `from` on that doubling and halving the stride find.
-fn longest<T>(attempt: &mut impl FnMut(usize) -> Option<T>, from: usize, last: usize, guess: usize) -> Option<T> {
+pub(super) fn longest<T>(attempt: &mut impl FnMut(usize) -> Option<T>, from: usize, last: usize, guess: usize) -> Option<T> {
     /// A last stride that is this part of the way says nothing more.
     const FINE: usize = 16;
     let mut best: Option<(usize, T)> = None;

@@ -1,0 +1,187 @@
+//! PH quintics with continuous curvature.
+//!
+//! A quintic w = w0, w1, w2 has six numbers. Point, tangent and curvature at both ends of a segment are as many conditions: two for the chord,
+//! two for the directions of w0 and w2, two for the curvatures, of which the one at the start is 4 Im(conj w0 w1)/|w0|^4 and the one at the
+//! end -4 Im(conj w2 w1)/|w2|^4. So neighbours that share point, tangent and curvature need nothing else of each other, and each segment
+//! is found by itself. What it follows is a B-spline through the polyline; how far it is from the polyline itself is measured.
+
+use shared::complex::Complex;
+use shared::curve::PhQuintic;
+
+use super::bspline::{self, Bspline, across};
+use super::curve::Bezier;
+use super::piecewise::longest;
+use super::polyline::Polyline;
+use super::vector::Vector;
+use super::{Curve, Part};
+
+/// The part of the tolerance that the B-spline takes.
+const SPLINE: f64 = 0.4;
+
+/// A PH quintic in a plane across z.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FlatPh {
+    /// The curve in x and y.
+    pub curve: PhQuintic<f64>,
+    /// Its z in mm.
+    pub z: f64,
+}
+
+impl FlatPh {
+    /// By its control points.
+    pub fn bezier(&self) -> Bezier<6> {
+        Bezier { points: self.curve.control_points().map(|p| Vector([p.re, p.im, self.z])) }
+    }
+}
+
+/// What both ends of a segment share with their neighbours.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Node {
+    pub point: Complex<f64>,
+    /// The direction, a unit.
+    pub tangent: Complex<f64>,
+    /// In 1/mm, positive to the left.
+    pub curvature: f64,
+}
+
+impl Node {
+    fn of(spline: &Bspline, way: f64) -> Option<Self> {
+        let at = spline.at(way);
+        let flat = |v: Vector| Complex::new(v.0[0], v.0[1]);
+        let tangent = flat(at.tangent()?);
+        Some(Self { point: flat(at.point), tangent, curvature: tangent.cross(flat(at.curvature())) })
+    }
+}
+
+/// Fits a run of at least two points at one z. The error is as that of [`bspline::fit`].
+pub(super) fn fit(line: &Polyline<'_>, first: usize, tolerance: f64, parts: &mut Vec<Part>) -> Result<(), usize> {
+    let (spline, _) = bspline::fit(line, SPLINE * tolerance)?;
+    let z = line.points[0].0[2];
+    let mut ways: Vec<f64> = line.ways.iter().chain(spline.breaks()).copied().collect();
+    ways.sort_by(f64::total_cmp);
+    ways.dedup_by(|a, b| *a - *b < 1e-9 * line.length());
+    let nodes: Option<Vec<Node>> = ways.iter().map(|&way| Node::of(&spline, way)).collect();
+    let nodes = nodes.ok_or(line.points.len() / 2)?;
+    let last = ways.len() - 1;
+    let (mut from, mut guess) = (0, 8);
+    let mut found = Vec::new();
+    while from < last {
+        let mut attempt = |to: usize| {
+            let curve = FlatPh { curve: hermite(&nodes[from], &nodes[to])?, z };
+            let deviation = across(line, &curve.bezier(), [ways[from], ways[to]], tolerance);
+            (deviation <= tolerance).then_some((curve, deviation, to))
+        };
+        let Some((curve, deviation, to)) = longest(&mut attempt, from, last, guess) else {
+            return Err(bspline::corner(line, ways[from]));
+        };
+        let vertices = [from, to].map(|k| first + line.segment(ways[k]) + usize::from(k == last));
+        found.push(Part { curve: Curve::Ph(curve), vertices, deviation });
+        guess = to - from;
+        from = to;
+    }
+    parts.append(&mut found);
+    Ok(())
+}
+
+/// Newton's steps at the most.
+const STEPS: usize = 30;
+
+/// What is left of the conditions, in parts of the chord and of the curvature times the chord.
+const EXACT: f64 = 1e-11;
+
+/// The segment between two nodes; none where none is near.
+pub(super) fn hermite(from: &Node, to: &Node) -> Option<PhQuintic<f64>> {
+    let chord = to.point - from.point;
+    let length = chord.norm();
+    // In a frame in which the chord is 1 along the real axis.
+    let turned = |tangent: Complex<f64>| tangent * chord.conj() * (1.0 / length);
+    let (e0, e2) = (turned(from.tangent).sqrt(), turned(to.tangent).sqrt());
+    if !(length > 0.0 && (turned(from.tangent).re > 0.0) && (turned(to.tangent).re > 0.0)) {
+        return None;
+    }
+    let curvatures = [from.curvature * length, to.curvature * length];
+    // a, b and w1: as if the curve were passed evenly.
+    let even = (2.0 / (turned(from.tangent).re + turned(to.tangent).re)).powf(0.25);
+    let mut x = [even, even, even, 0.25 * (curvatures[0] - curvatures[1]) * 0.5];
+    for _ in 0..STEPS {
+        let (rows, left) = conditions(x, [e0, e2], curvatures);
+        let size = left.iter().map(|left| left.abs()).fold(0.0, f64::max);
+        if size < EXACT {
+            let back = (chord * (1.0 / length)).sqrt() * length.sqrt();
+            let w = [e0 * x[0], Complex::new(x[2], x[3]), e2 * x[1]].map(|w| w * back);
+            return (x[0] > 0.0 && x[1] > 0.0).then_some(PhQuintic { start: from.point, w });
+        }
+        if size > 1e3 || size.is_nan() {
+            return None;
+        }
+        // The least step that would do: on a straight way the speeds along it are open.
+        let step = least_step(&rows, &left)?;
+        let longest = step.iter().map(|step| step.abs()).fold(0.0, f64::max);
+        let damped = if longest > 0.5 { 0.5 / longest } else { 1.0 };
+        x.iter_mut().zip(step).for_each(|(x, step)| *x -= damped * step);
+    }
+    None
+}
+
+/// The four conditions' derivatives and what is left of them.
+fn conditions(
+    [a, b, re, im]: [f64; 4],
+    [e0, e2]: [Complex<f64>; 2],
+    [k0, k2]: [f64; 2],
+) -> ([[f64; 4]; 4], [f64; 4]) {
+    let (w0, w1, w2) = (e0 * a, Complex::new(re, im), e2 * b);
+    let square = |w: Complex<f64>| w * w;
+    let chord = (square(w0) * 3.0 + w0 * w1 * 3.0 + square(w1) * 2.0 + w0 * w2 + w1 * w2 * 3.0 + square(w2) * 3.0)
+        * (1.0 / 15.0);
+    let by_a = e0 * (w0 * 6.0 + w1 * 3.0 + w2) * (1.0 / 15.0);
+    let by_b = e2 * (w0 + w1 * 3.0 + w2 * 6.0) * (1.0 / 15.0);
+    let by_w1 = (w0 * 3.0 + w1 * 4.0 + w2 * 3.0) * (1.0 / 15.0);
+    let rows = [
+        [by_a.re, by_b.re, by_w1.re, -by_w1.im],
+        [by_a.im, by_b.im, by_w1.im, by_w1.re],
+        [0.75 * k0 * a * a, 0.0, e0.im, -e0.re],
+        [0.0, 0.75 * k2 * b * b, -e2.im, e2.re],
+    ];
+    let left = [
+        chord.re - 1.0,
+        chord.im,
+        0.25 * k0 * a * a * a - e0.cross(w1),
+        0.25 * k2 * b * b * b + e2.cross(w1),
+    ];
+    (rows, left)
+}
+
+/// J^T (J J^T + m)^-1 r by Cholesky's factors.
+fn least_step(rows: &[[f64; 4]; 4], right: &[f64; 4]) -> Option<[f64; 4]> {
+    /// What keeps the matrix regular where a condition says nothing new.
+    const REGULAR: f64 = 1e-13;
+    let mut matrix = [[0.0; 4]; 4];
+    for (i, row) in matrix.iter_mut().enumerate() {
+        for (j, entry) in row.iter_mut().enumerate() {
+            *entry = (0..4).map(|k| rows[i][k] * rows[j][k]).sum::<f64>() + if i == j { REGULAR } else { 0.0 };
+        }
+    }
+    let mut y = *right;
+    for k in 0..4 {
+        let pivot = matrix[k][k];
+        if pivot.is_nan() || pivot <= 0.0 {
+            return None;
+        }
+        for row in k + 1..4 {
+            let factor = matrix[row][k] / pivot;
+            for column in k..4 {
+                matrix[row][column] -= factor * matrix[k][column];
+            }
+            y[row] -= factor * y[k];
+        }
+    }
+    for k in (0..4).rev() {
+        let sum: f64 = (k + 1..4).map(|column| matrix[k][column] * y[column]).sum();
+        y[k] = (y[k] - sum) / matrix[k][k];
+    }
+    let mut step = [0.0; 4];
+    for (k, step) in step.iter_mut().enumerate() {
+        *step = (0..4).map(|row| rows[row][k] * y[row]).sum();
+    }
+    Some(step)
+}
