@@ -51,6 +51,17 @@ impl Bspline {
         Bezier { points: [[from; 3], [from, from, to], [from, to, to], [to; 3]].map(blossom) }
     }
 
+    /// The part between two ways of one span.
+    pub(super) fn part(&self, ways: [f64; 2]) -> Cubic {
+        let middle = 0.5 * (ways[0] + ways[1]);
+        let k = self.breaks().partition_point(|&at| at <= middle).clamp(1, self.count()) - 1;
+        let (from, to) = (self.knots[k + 3], self.knots[k + 4]);
+        let [start, end] = ways.map(|way| ((way - from) / (to - from)).clamp(0.0, 1.0));
+        let [before, _] = self.span(k).split(end);
+        let [_, part] = before.split(if end > 0.0 { start / end } else { 0.0 });
+        part
+    }
+
     /// Where it is at a way; derivatives are by the way.
     pub(super) fn at(&self, way: f64) -> Local {
         let k = self.breaks().partition_point(|&at| at <= way).clamp(1, self.count()) - 1;
@@ -111,7 +122,7 @@ pub(super) fn fit(line: &Polyline<'_>, tolerance: f64) -> Result<(Bspline, Vec<f
 }
 
 /// The inner vertex that is nearest to a way.
-pub(super) fn corner(line: &Polyline<'_>, way: f64) -> usize {
+fn corner(line: &Polyline<'_>, way: f64) -> usize {
     let k = line.segment(way);
     let near = if way - line.ways[k] < line.ways[k + 1] - way { k } else { k + 1 };
     near.clamp(1, line.points.len().saturating_sub(2).max(1))

@@ -27,7 +27,7 @@ pub mod vector;
 
 use corners::Vertex;
 use curve::{Bezier, Cubic};
-use ph::FlatPh;
+use ph::RisingPh;
 use polyline::Polyline;
 use vector::Vector;
 
@@ -38,7 +38,7 @@ pub enum Kind {
     Bezier,
     /// Cubic B-splines, with continuous curvature.
     Bspline,
-    /// PH quintics with continuous curvature; cubic B-splines where the way is not in a plane across z.
+    /// PH quintics with continuous curvature in x and y, along which z goes; cubic B-splines where the way is straight up or down.
     Ph,
 }
 
@@ -50,7 +50,7 @@ pub enum Curve {
     /// A cubic.
     Cubic(Cubic),
     /// A PH quintic.
-    Ph(FlatPh),
+    Ph(RisingPh),
 }
 
 /// A part of a fit.
@@ -93,8 +93,7 @@ fn smooth(points: &[Vector], ends: [usize; 2], kind: Kind, tolerance: f64, parts
             continue;
         }
         let line = Polyline::new(run);
-        let is_flat = run.iter().all(|point| point.0[2] == run[0].0[2]);
-        let corner = if kind == Kind::Ph && is_flat {
+        let corner = if kind == Kind::Ph {
             ph::fit(&line, from, tolerance, parts)
         } else {
             bspline::fit(&line, tolerance).map(|(spline, deviations)| {

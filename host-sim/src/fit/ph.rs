@@ -18,19 +18,21 @@ use super::{Curve, Part};
 /// The part of the tolerance that the B-spline takes.
 const SPLINE: f64 = 0.4;
 
-/// A PH quintic in a plane across z.
+/// A PH quintic in x and y that rises and falls on its way.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct FlatPh {
+pub struct RisingPh {
     /// The curve in x and y.
-    pub curve: PhQuintic<f64>,
-    /// Its z in mm.
-    pub z: f64,
+    pub plane: PhQuintic<f64>,
+    /// The Bernstein coefficients of z in mm, over the same parameter.
+    pub z: [f64; 6],
 }
 
-impl FlatPh {
+impl RisingPh {
     /// By its control points.
     pub fn bezier(&self) -> Bezier<6> {
-        Bezier { points: self.curve.control_points().map(|p| Vector([p.re, p.im, self.z])) }
+        let mut points = self.plane.control_points().map(|p| Vector([p.re, p.im, 0.0]));
+        points.iter_mut().zip(self.z).for_each(|(point, z)| point.0[2] = z);
+        Bezier { points }
     }
 }
 
@@ -42,44 +44,74 @@ pub(super) struct Node {
     pub tangent: Complex<f64>,
     /// In 1/mm, positive to the left.
     pub curvature: f64,
+    /// z, and its first and second derivative by the way in x and y.
+    pub z: [f64; 3],
 }
 
+/// A way in x and y that is this part of the way in space is none.
+const STEEP: f64 = 1e-3;
+
 impl Node {
+    /// None where the way goes straight up or down.
     fn of(spline: &Bspline, way: f64) -> Option<Self> {
         let at = spline.at(way);
         let flat = |v: Vector| Complex::new(v.0[0], v.0[1]);
-        let tangent = flat(at.tangent()?);
-        Some(Self { point: flat(at.point), tangent, curvature: tangent.cross(flat(at.curvature())) })
+        let (first, second) = (flat(at.first), flat(at.second));
+        let speed = first.norm();
+        if speed.is_nan() || speed <= STEEP * at.first.norm() {
+            return None;
+        }
+        let tangent = first * (1.0 / speed);
+        let slope = at.first.0[2] / speed;
+        let bend = (at.second.0[2] - slope * tangent.dot(second)) / (speed * speed);
+        let curvature = first.cross(second) / speed.powi(3);
+        Some(Self { point: flat(at.point), tangent, curvature, z: [at.point.0[2], slope, bend] })
     }
 }
 
-/// Fits a run of at least two points at one z. The error is as that of [`bspline::fit`].
+/// z over the parameter of a curve, so that it and two derivatives by the way are those of the nodes.
+fn rise(plane: &PhQuintic<f64>, from: &Node, to: &Node) -> [f64; 6] {
+    let sigma = plane.speed_coefficients();
+    // By the parameter: z' = z_s sigma, z'' = z_ss sigma^2 + z_s sigma'.
+    let by_parameter = |[_, slope, bend]: [f64; 3], sigma: f64, change: f64| {
+        [slope * sigma / 5.0, (bend * sigma * sigma + slope * change) / 20.0]
+    };
+    let [first, second] = by_parameter(from.z, sigma[0], 4.0 * (sigma[1] - sigma[0]));
+    let [last, before] = by_parameter(to.z, sigma[4], 4.0 * (sigma[4] - sigma[3]));
+    let ([start, ..], [end, ..]) = (from.z, to.z);
+    [start, start + first, start + 2.0 * first + second, end - 2.0 * last + before, end - last, end]
+}
+
+/// Fits a run of at least two points. Where no PH quintic follows, and where the way goes straight up or down, the cubics of the B-spline
+/// stay, which share point, tangent and curvature with it. The error is as that of [`bspline::fit`].
 pub(super) fn fit(line: &Polyline<'_>, first: usize, tolerance: f64, parts: &mut Vec<Part>) -> Result<(), usize> {
     let (spline, _) = bspline::fit(line, SPLINE * tolerance)?;
-    let z = line.points[0].0[2];
     let mut ways: Vec<f64> = line.ways.iter().chain(spline.breaks()).copied().collect();
     ways.sort_by(f64::total_cmp);
     ways.dedup_by(|a, b| *a - *b < 1e-9 * line.length());
-    let nodes: Option<Vec<Node>> = ways.iter().map(|&way| Node::of(&spline, way)).collect();
-    let nodes = nodes.ok_or(line.points.len() / 2)?;
+    let nodes: Vec<Option<Node>> = ways.iter().map(|&way| Node::of(&spline, way)).collect();
     let last = ways.len() - 1;
     let (mut from, mut guess) = (0, 8);
-    let mut found = Vec::new();
     while from < last {
         let mut attempt = |to: usize| {
-            let curve = FlatPh { curve: hermite(&nodes[from], &nodes[to])?, z };
+            let (start, end) = (nodes[from].as_ref()?, nodes[to].as_ref()?);
+            let plane = hermite(start, end)?;
+            let curve = RisingPh { plane, z: rise(&plane, start, end) };
             let deviation = across(line, &curve.bezier(), [ways[from], ways[to]], tolerance);
-            (deviation <= tolerance).then_some((curve, deviation, to))
+            (deviation <= tolerance).then_some((Curve::Ph(curve), deviation, to))
         };
-        let Some((curve, deviation, to)) = longest(&mut attempt, from, last, guess) else {
-            return Err(bspline::corner(line, ways[from]));
-        };
+        let (curve, deviation, to) = longest(&mut attempt, from, last, guess).unwrap_or_else(|| {
+            // To the end of the span.
+            let ends = spline.breaks();
+            let end = ends[ends.partition_point(|&at| at <= ways[from]).min(ends.len() - 1)];
+            let to = ways.partition_point(|&way| way < end).clamp(from + 1, last);
+            (Curve::Cubic(spline.part([ways[from], ways[to]])), SPLINE * tolerance, to)
+        });
         let vertices = [from, to].map(|k| first + line.segment(ways[k]) + usize::from(k == last));
-        found.push(Part { curve: Curve::Ph(curve), vertices, deviation });
+        parts.push(Part { curve, vertices, deviation });
         guess = to - from;
         from = to;
     }
-    parts.append(&mut found);
     Ok(())
 }
 
