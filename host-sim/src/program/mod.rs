@@ -9,6 +9,7 @@
 //! | [`item`] | motions and events, in mm and seconds |
 //! | [`rs274`] | G-code as LinuxCNC and Grbl speak it |
 //! | [`apt`] | cutter-location files of CAM systems |
+//! | [`sinumerik`] | programs for the Sinumerik 840D, with B-splines |
 //!
 //! Coordinates are those of the *program*: of the tool's tip in the coordinate system that is active when the program
 //! begins. Other systems, G92 and machine coordinates are brought into that one frame, so the items are one coherent path.
@@ -20,6 +21,7 @@ mod lines;
 mod number;
 mod output;
 pub mod rs274;
+pub mod sinumerik;
 
 pub use item::{Action, Arc, Feed, Item, Motion, Plane};
 
