@@ -278,6 +278,10 @@ impl Reader {
             Mode::Move(Move::Spline) => {
                 let place = out.place(at);
                 if !self.spline.is_open() {
+                    if self.inverse {
+                        // Each of its blocks would have a time, and a spline is one motion.
+                        return fail(at, Fault::NoUse("G93"));
+                    }
                     self.check_feed(at, block)?;
                     self.spline.begin(self.place, self.feed, place);
                 }

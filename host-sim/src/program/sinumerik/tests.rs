@@ -143,6 +143,7 @@ fn each_fault_has_its_place_and_its_sentence() {
         ("X1", "1:1: there is no motion yet; G0, G1, G2, G3 or BSPLINE would do"),
         ("G1 X1", "1:4: there is no feed yet; put F before this motion"),
         ("G93 G1 F2 X1\nX2", "2:1: with G93 every block that cuts needs its own F"),
+        ("G93 BSPLINE F2 X1", "1:16: G93 means nothing to the motion of this block"),
         ("G54\nG55", "2:1: the coordinate system changes; one of G54 to G57 and G500 all through would do"),
         ("G4", "1:1: G4 needs F with seconds; turns of the spindle are not supported"),
         ("G1 F1 X1 PL=1", "1:10: PL or PW means nothing to the motion of this block"),
