@@ -9,17 +9,22 @@
 //! | [`item`] | motions and events, in mm and seconds |
 //! | [`rs274`] | G-code as LinuxCNC and Grbl speak it |
 //! | [`apt`] | cutter-location files of CAM systems |
+//! | [`sinumerik`] | programs for the Sinumerik 840D, with B-splines |
+//! | [`write`] | programs of one's own, from the same motions |
 //!
 //! Coordinates are those of the *program*: of the tool's tip in the coordinate system that is active when the program
 //! begins. Other systems, G92 and machine coordinates are brought into that one frame, so the items are one coherent path.
 
 pub mod apt;
 mod arc;
+mod bspline;
 pub mod item;
 mod lines;
 mod number;
 mod output;
 pub mod rs274;
+pub mod sinumerik;
+pub mod write;
 
 pub use item::{Action, Arc, Feed, Item, Motion, Plane};
 

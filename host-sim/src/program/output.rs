@@ -25,7 +25,23 @@ impl<'a, 'b> Output<'a, 'b> {
 
     /// Gives an item that the word at `at` asks for.
     pub fn give(&mut self, at: usize, from: [f64; 3], feed: Feed, action: Action<'_>) -> Result<(), Refused> {
-        let item = Item { line: self.line, column: column(self.text, at), from, feed, action };
+        self.give_before(self.place(at), from, feed, action)
+    }
+
+    /// The line and column of the byte at `at` of this line.
+    pub fn place(&self, at: usize) -> (usize, usize) {
+        (self.line, column(self.text, at))
+    }
+
+    /// Gives an item that a line and column, this line's or another one's, ask for.
+    pub fn give_before(
+        &mut self,
+        (line, column): (usize, usize),
+        from: [f64; 3],
+        feed: Feed,
+        action: Action<'_>,
+    ) -> Result<(), Refused> {
+        let item = Item { line, column, from, feed, action };
         match (self.sink)(&item) {
             Ok(()) => Ok(()),
             Err(reason) => {
