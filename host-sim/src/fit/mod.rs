@@ -13,18 +13,25 @@
 //! | `polyline`, `band` | a polyline by the way along it; least squares of splines |
 //! | [`bspline`] | cubic B-splines with continuous curvature (SA 5) |
 //! | [`ph`] | PH quintics with continuous curvature |
+//! | [`joins`] | how smoothly one curve goes on to the next |
+//! | [`program`] | all of that for the lines of a program |
 
 mod band;
 pub mod bspline;
 mod conditions;
 mod corners;
 pub mod curve;
+pub mod joins;
 pub mod ph;
 mod piecewise;
 mod polyline;
+pub mod program;
 mod tangent;
 pub mod vector;
 
+use std::ops::Range;
+
+use bspline::Bspline;
 use corners::Vertex;
 use curve::{Bezier, Cubic};
 use ph::RisingPh;
@@ -62,48 +69,64 @@ pub struct Part {
     pub vertices: [usize; 2],
     /// An upper bound of how far curve and polyline are apart anywhere, in mm.
     pub deviation: f64,
+    /// Whether it goes on smoothly from the part before it: in direction, and but for [`Kind::Bezier`] in curvature.
+    pub is_smooth: bool,
+}
+
+/// What a polyline comes to.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Fit {
+    /// Curve after curve.
+    pub parts: Vec<Part>,
+    /// The B-splines among them, with the numbers of the parts that are their spans.
+    pub splines: Vec<(Range<usize>, Bspline)>,
 }
 
 /// Fits curves to a polyline, none of whose points is repeated, within a tolerance in mm.
-pub fn fit(points: &[Vector], kind: Kind, tolerance: f64) -> Vec<Part> {
+pub fn fit(points: &[Vector], kind: Kind, tolerance: f64) -> Fit {
+    let mut found = Fit::default();
     if points.len() < 2 {
-        return Vec::new();
+        return found;
     }
     if kind == Kind::Bezier {
-        return piecewise::fit(points, tolerance);
+        found.parts = piecewise::fit(points, tolerance);
+        return found;
     }
     let kinds = corners::vertices(points, tolerance);
-    let mut parts = Vec::new();
     let mut from = 0;
     for to in (1..points.len()).filter(|&k| kinds[k] == Vertex::Corner) {
-        smooth(points, [from, to], kind, tolerance, &mut parts);
+        smooth(points, [from, to], kind, tolerance, &mut found);
         from = to;
     }
-    parts
+    found
 }
 
 /// Fits the vertices between two corners. Where a vertex turns out to be a corner, both sides of it.
-fn smooth(points: &[Vector], ends: [usize; 2], kind: Kind, tolerance: f64, parts: &mut Vec<Part>) {
+fn smooth(points: &[Vector], ends: [usize; 2], kind: Kind, tolerance: f64, found: &mut Fit) {
     let mut open = vec![ends];
     while let Some([from, to]) = open.pop() {
         let run = &points[from..=to];
-        if to == from + 1 {
-            let line = Bezier { points: [run[0], run[1]] };
-            parts.push(Part { curve: Curve::Line(line), vertices: [from, to], deviation: 0.0 });
+        let ends = [run[0], run[run.len() - 1]];
+        let deviation = run.iter().map(|point| point.from_segment(ends[0], ends[1])).fold(0.0, f64::max);
+        if deviation <= tolerance {
+            let curve = Curve::Line(Bezier { points: ends });
+            found.parts.push(Part { curve, vertices: [from, to], deviation, is_smooth: false });
             continue;
         }
         let line = Polyline::new(run);
         let corner = if kind == Kind::Ph {
-            ph::fit(&line, from, tolerance, parts)
+            ph::fit(&line, from, tolerance, &mut found.parts)
         } else {
             bspline::fit(&line, tolerance).map(|(spline, deviations)| {
+                let first = found.parts.len();
                 let spans = spline.breaks().windows(2).zip(deviations).enumerate();
-                parts.extend(spans.map(|(k, (ways, deviation))| {
+                found.parts.extend(spans.map(|(k, (ways, deviation))| {
                     let vertex = |way: f64, is_end: bool| from + line.segment(way) + usize::from(is_end);
                     let is_last = ways[1] >= line.length();
                     let vertices = [vertex(ways[0], false), vertex(ways[1], is_last)];
-                    Part { curve: Curve::Cubic(spline.span(k)), vertices, deviation }
+                    Part { curve: Curve::Cubic(spline.span(k)), vertices, deviation, is_smooth: k > 0 }
                 }));
+                found.splines.push((first..found.parts.len(), spline));
             })
         };
         if let Err(corner) = corner {

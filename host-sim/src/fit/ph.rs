@@ -49,7 +49,7 @@ pub(super) struct Node {
 }
 
 /// A way in x and y that is this part of the way in space is none.
-const STEEP: f64 = 1e-3;
+const STEEP: f64 = 0.02;
 
 impl Node {
     /// None where the way goes straight up or down.
@@ -92,6 +92,7 @@ pub(super) fn fit(line: &Polyline<'_>, first: usize, tolerance: f64, parts: &mut
     let nodes: Vec<Option<Node>> = ways.iter().map(|&way| Node::of(&spline, way)).collect();
     let last = ways.len() - 1;
     let (mut from, mut guess) = (0, 8);
+    let mut found = Vec::new();
     while from < last {
         let mut attempt = |to: usize| {
             let (start, end) = (nodes[from].as_ref()?, nodes[to].as_ref()?);
@@ -100,19 +101,58 @@ pub(super) fn fit(line: &Polyline<'_>, first: usize, tolerance: f64, parts: &mut
             let deviation = across(line, &curve.bezier(), [ways[from], ways[to]], tolerance);
             (deviation <= tolerance).then_some((Curve::Ph(curve), deviation, to))
         };
-        let (curve, deviation, to) = longest(&mut attempt, from, last, guess).unwrap_or_else(|| {
-            // To the end of the span.
-            let ends = spline.breaks();
-            let end = ends[ends.partition_point(|&at| at <= ways[from]).min(ends.len() - 1)];
-            let to = ways.partition_point(|&way| way < end).clamp(from + 1, last);
-            (Curve::Cubic(spline.part([ways[from], ways[to]])), SPLINE * tolerance, to)
-        });
-        let vertices = [from, to].map(|k| first + line.segment(ways[k]) + usize::from(k == last));
-        parts.push(Part { curve, vertices, deviation });
+        let to = match longest(&mut attempt, from, last, guess) {
+            Some((curve, deviation, to)) => {
+                found.push(([ways[from], ways[to]], curve, deviation));
+                to
+            }
+            None => {
+                // To the end of the span.
+                let ends = spline.breaks();
+                let end = ends[ends.partition_point(|&at| at <= ways[from]).min(ends.len() - 1)];
+                let to = ways.partition_point(|&way| way < end).clamp(from + 1, last);
+                in_parts(line, &spline, [ways[from], ways[to]], tolerance, HALVINGS, &mut found);
+                to
+            }
+        };
         guess = to - from;
         from = to;
     }
+    for (k, ([start, end], curve, deviation)) in found.into_iter().enumerate() {
+        let vertices = [first + line.segment(start), first + line.segment(end) + usize::from(end >= line.length())];
+        parts.push(Part { curve, vertices, deviation, is_smooth: k > 0 });
+    }
     Ok(())
+}
+
+/// How often a span is halved before its cubics stay.
+const HALVINGS: u32 = 6;
+
+/// A curve over an interval of ways, and its deviation.
+type Found = ([f64; 2], Curve, f64);
+
+/// Lays PH quintics along the halves, quarters and so on of a span's part.
+fn in_parts(line: &Polyline<'_>, spline: &Bspline, ways: [f64; 2], tolerance: f64, halvings: u32, found: &mut Vec<Found>) {
+    let nodes = ways.map(|way| Node::of(spline, way));
+    if let [Some(start), Some(end)] = nodes {
+        let rising = hermite(&start, &end).map(|plane| RisingPh { plane, z: rise(&plane, &start, &end) });
+        let near = |curve: &RisingPh| across(line, &curve.bezier(), ways, tolerance);
+        if let Some(curve) = rising
+            && let deviation = near(&curve)
+            && deviation <= tolerance
+        {
+            found.push((ways, Curve::Ph(curve), deviation));
+            return;
+        }
+    }
+    if halvings == 0 || nodes.contains(&None) {
+        found.push((ways, Curve::Cubic(spline.part(ways)), SPLINE * tolerance));
+        return;
+    }
+    let middle = 0.5 * (ways[0] + ways[1]);
+    for half in [[ways[0], middle], [middle, ways[1]]] {
+        in_parts(line, spline, half, tolerance, halvings - 1, found);
+    }
 }
 
 /// Newton's steps at the most.

@@ -29,7 +29,11 @@ pub(super) fn fit(points: &[Vector], tolerance: f64) -> Vec<Part> {
     let mut from = 0;
     while from + 1 < points.len() {
         if is_straight(&kinds, from) {
-            parts.push(Part { curve: line(points, from, from + 1), vertices: [from, from + 1], deviation: 0.0 });
+            let vertices = [from, from + 1];
+            // Behind a curve that ends along it.
+            let behind_curve = matches!(parts.last(), Some(Part { curve: Curve::Cubic(_), .. }));
+            let is_smooth = behind_curve && kinds[from] == Vertex::Tangent { before: false };
+            parts.push(Part { curve: line(points, from, from + 1), vertices, deviation: 0.0, is_smooth });
             from += 1;
             continue;
         }
@@ -85,6 +89,7 @@ impl<'a> Run<'a> {
         let mut feet = Vec::new();
         let (mut from, mut guess) = (0, 4);
         let mut start = self.tangent(0);
+        let mut is_smooth = self.given[0].is_some();
         while from < last {
             let mut attempt = |to: usize| {
                 let end = self.tangent(to)?;
@@ -95,14 +100,15 @@ impl<'a> Run<'a> {
             let to = match found {
                 Some((cubic, walk, to, end)) => {
                     let vertices = [self.first + from, self.first + to];
-                    parts.push(Part { curve: Curve::Cubic(cubic), vertices, deviation: walk.deviation });
-                    start = Some(end);
+                    parts.push(Part { curve: Curve::Cubic(cubic), vertices, deviation: walk.deviation, is_smooth });
+                    (start, is_smooth) = (Some(end), true);
                     to
                 }
                 None => {
                     let vertices = [self.first + from, self.first + from + 1];
-                    parts.push(Part { curve: line(self.points, from, from + 1), vertices, deviation: 0.0 });
-                    start = self.tangent(from + 1);
+                    let curve = line(self.points, from, from + 1);
+                    parts.push(Part { curve, vertices, deviation: 0.0, is_smooth: false });
+                    (start, is_smooth) = (self.tangent(from + 1), false);
                     from + 1
                 }
             };

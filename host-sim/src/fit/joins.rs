@@ -1,0 +1,46 @@
+//! How smoothly the curves of a fit go on from one to the next, from the curves themselves.
+
+use super::curve::{Bezier, Local};
+use super::{Curve, Part};
+
+/// The largest breaks where curves should go on smoothly.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Joins {
+    /// Of the direction, in radians.
+    pub tangent: f64,
+    /// Of the curvature as a vector, as a part of the larger one.
+    pub curvature: f64,
+}
+
+/// A curvature that counts as this much at least, in 1/mm: 1 m of radius is straight.
+const STRAIGHT: f64 = 1e-3;
+
+/// Measures all joins but those at corners.
+pub fn joins(parts: &[Part]) -> Joins {
+    let mut found = Joins::default();
+    for pair in parts.windows(2) {
+        let [before, after] = pair else { continue };
+        if !after.is_smooth {
+            continue;
+        }
+        let (end, start) = (before.curve.at(1.0), after.curve.at(0.0));
+        if let (Some(a), Some(b)) = (end.tangent(), start.tangent()) {
+            found.tangent = found.tangent.max(a.cross(b).norm().atan2(a.dot(b)));
+        }
+        let (a, b) = (end.curvature(), start.curvature());
+        let largest = a.norm().max(b.norm()).max(STRAIGHT);
+        found.curvature = found.curvature.max((a - b).norm() / largest);
+    }
+    found
+}
+
+impl Curve {
+    /// Where it is at a parameter of 0..=1.
+    pub fn at(&self, t: f64) -> Local {
+        match self {
+            Self::Line(line) => line.at(t),
+            Self::Cubic(cubic) => Bezier::at(cubic, t),
+            Self::Ph(ph) => ph.bezier().at(t),
+        }
+    }
+}

@@ -1,0 +1,106 @@
+//! Fits of a whole program: each chain of lines becomes curves, everything else stays as it is.
+//!
+//! A chain goes on as long as lines follow each other at the same feed; it is fitted as soon as it ends, so that only the longest one is in
+//! memory.
+
+use serde::Serialize;
+
+use super::joins::joins;
+use super::vector::Vector;
+use super::{Fit, Kind, fit};
+use crate::program::{Action, Feed, Item, Motion};
+
+/// What a program comes to, one after the other.
+#[derive(Debug)]
+pub enum Step<'a> {
+    /// A chain of lines, as curves.
+    Curves {
+        /// The curves.
+        fit: &'a Fit,
+        /// Their feed.
+        feed: Feed,
+    },
+    /// A motion or an event of the program that is no line.
+    Kept(&'a Item<'a>),
+}
+
+/// What fitting came to.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Summary {
+    /// Points of the lines.
+    pub points: usize,
+    /// Lines of the program.
+    pub lines: usize,
+    /// Curves in their place.
+    pub segments: usize,
+    /// Motions that are no lines.
+    pub other_motions: usize,
+    /// An upper bound in mm of how far curves and lines are apart anywhere.
+    pub max_deviation: f64,
+    /// The largest break of the direction in radians where one curve goes on smoothly to the next.
+    pub max_tangent_break: f64,
+    /// The largest jump of the curvature there, as a part of the larger one.
+    pub max_curvature_jump: f64,
+}
+
+/// Takes the items of a program.
+pub struct Fitter<'a> {
+    kind: Kind,
+    tolerance: f64,
+    points: Vec<Vector>,
+    feed: Feed,
+    summary: Summary,
+    sink: &'a mut dyn FnMut(Step<'_>) -> Result<(), String>,
+}
+
+impl<'a> Fitter<'a> {
+    /// Gives what it makes to `sink`; the tolerance is in mm.
+    pub fn new(kind: Kind, tolerance: f64, sink: &'a mut dyn FnMut(Step<'_>) -> Result<(), String>) -> Self {
+        Self { kind, tolerance, points: Vec::new(), feed: Feed::Unset, summary: Summary::default(), sink }
+    }
+
+    /// The next item. Errors are those of the sink.
+    pub fn take(&mut self, item: &Item<'_>) -> Result<(), String> {
+        if let Action::Motion(Motion::Line { to }) = item.action {
+            if item.feed != self.feed || matches!(item.feed, Feed::Duration(_)) {
+                self.close()?;
+                self.feed = item.feed;
+            }
+            if self.points.is_empty() {
+                self.points.push(Vector(item.from));
+            }
+            self.summary.lines += 1;
+            if self.points.last() != Some(&Vector(to)) {
+                self.points.push(Vector(to));
+            }
+            return Ok(());
+        }
+        self.close()?;
+        if matches!(item.action, Action::Motion(_)) {
+            self.summary.other_motions += 1;
+        }
+        (self.sink)(Step::Kept(item))
+    }
+
+    /// Ends the program. Errors are those of the sink.
+    pub fn finish(mut self) -> Result<Summary, String> {
+        self.close()?;
+        Ok(self.summary)
+    }
+
+    fn close(&mut self) -> Result<(), String> {
+        let points = std::mem::take(&mut self.points);
+        if points.len() < 2 {
+            return Ok(());
+        }
+        let fit = fit(&points, self.kind, self.tolerance);
+        let found = joins(&fit.parts);
+        let all = &mut self.summary;
+        all.points += points.len();
+        all.segments += fit.parts.len();
+        all.max_deviation = fit.parts.iter().map(|part| part.deviation).fold(all.max_deviation, f64::max);
+        all.max_tangent_break = all.max_tangent_break.max(found.tangent);
+        all.max_curvature_jump = all.max_curvature_jump.max(found.curvature);
+        (self.sink)(Step::Curves { fit: &fit, feed: self.feed })
+    }
+}
