@@ -1,6 +1,7 @@
 //! The command line: one module a verb, each a thin reader of a result that the library computes.
 
 mod act;
+mod fit;
 mod keys;
 mod machine;
 mod monitor;
@@ -39,6 +40,7 @@ pub struct Cli {
 enum Verb {
     Simulate(simulate::Simulate),
     Offset(offset::OffsetVerb),
+    Fit(fit::FitVerb),
     Plan(plan::PlanVerb),
     Reproduce(reproduce::Reproduce),
     Prepare(prepare::Prepare),
@@ -53,6 +55,7 @@ impl Cli {
         match self.verb {
             Verb::Simulate(verb) => verb.run(),
             Verb::Offset(verb) => verb.run(),
+            Verb::Fit(verb) => verb.run(),
             Verb::Plan(verb) => verb.run(),
             Verb::Reproduce(verb) => verb.run(),
             Verb::Prepare(verb) => verb.run(),

@@ -162,12 +162,7 @@ fn deviation(line: &Polyline<'_>, spline: &Bspline, k: usize, tolerance: f64) ->
 }
 
 /// How far a curve and the polyline between two ways are apart; infinite where it is more than the tolerance.
-pub(super) fn across<const N: usize>(
-    line: &Polyline<'_>,
-    curve: &Bezier<N>,
-    ways: [f64; 2],
-    tolerance: f64,
-) -> f64 {
+pub(super) fn across<const N: usize>(line: &Polyline<'_>, curve: &Bezier<N>, ways: [f64; 2], tolerance: f64) -> f64 {
     // The ends of the curve stand for the points of the polyline that are nearest to them, on their segments.
     let ends = [(ways[0], curve.points[0]), (ways[1], curve.points[N - 1])].map(|(way, end)| {
         let k = line.segment(way);

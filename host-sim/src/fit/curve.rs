@@ -87,8 +87,9 @@ impl<const N: usize> Bezier<N> {
 mod tests {
     use super::*;
 
-    const CURVE: Cubic =
-        Bezier { points: [Vector([0.0, 0.0, 0.0]), Vector([1.0, 2.0, 1.0]), Vector([3.0, 2.0, 0.0]), Vector([4.0, 0.0, 3.0])] };
+    const CURVE: Cubic = Bezier {
+        points: [Vector([0.0, 0.0, 0.0]), Vector([1.0, 2.0, 1.0]), Vector([3.0, 2.0, 0.0]), Vector([4.0, 0.0, 3.0])],
+    };
 
     #[test]
     fn derivatives_are_those_of_the_points() {

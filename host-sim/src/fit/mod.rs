@@ -14,11 +14,13 @@
 //! | [`bspline`] | cubic B-splines with continuous curvature (SA 5) |
 //! | [`ph`] | PH quintics with continuous curvature |
 //! | [`joins`] | how smoothly one curve goes on to the next |
+//! | [`contour`] | the result in the contour form |
 //! | [`program`] | all of that for the lines of a program |
 
 mod band;
 pub mod bspline;
 mod conditions;
+pub mod contour;
 mod corners;
 pub mod curve;
 pub mod joins;

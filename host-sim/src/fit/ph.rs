@@ -132,7 +132,14 @@ const HALVINGS: u32 = 6;
 type Found = ([f64; 2], Curve, f64);
 
 /// Lays PH quintics along the halves, quarters and so on of a span's part.
-fn in_parts(line: &Polyline<'_>, spline: &Bspline, ways: [f64; 2], tolerance: f64, halvings: u32, found: &mut Vec<Found>) {
+fn in_parts(
+    line: &Polyline<'_>,
+    spline: &Bspline,
+    ways: [f64; 2],
+    tolerance: f64,
+    halvings: u32,
+    found: &mut Vec<Found>,
+) {
     let nodes = ways.map(|way| Node::of(spline, way));
     if let [Some(start), Some(end)] = nodes {
         let rising = hermite(&start, &end).map(|plane| RisingPh { plane, z: rise(&plane, &start, &end) });
@@ -196,11 +203,7 @@ pub(super) fn hermite(from: &Node, to: &Node) -> Option<PhQuintic<f64>> {
 }
 
 /// The four conditions' derivatives and what is left of them.
-fn conditions(
-    [a, b, re, im]: [f64; 4],
-    [e0, e2]: [Complex<f64>; 2],
-    [k0, k2]: [f64; 2],
-) -> ([[f64; 4]; 4], [f64; 4]) {
+fn conditions([a, b, re, im]: [f64; 4], [e0, e2]: [Complex<f64>; 2], [k0, k2]: [f64; 2]) -> ([[f64; 4]; 4], [f64; 4]) {
     let (w0, w1, w2) = (e0 * a, Complex::new(re, im), e2 * b);
     let square = |w: Complex<f64>| w * w;
     let chord = (square(w0) * 3.0 + w0 * w1 * 3.0 + square(w1) * 2.0 + w0 * w2 + w1 * w2 * 3.0 + square(w2) * 3.0)
@@ -214,12 +217,7 @@ fn conditions(
         [0.75 * k0 * a * a, 0.0, e0.im, -e0.re],
         [0.0, 0.75 * k2 * b * b, -e2.im, e2.re],
     ];
-    let left = [
-        chord.re - 1.0,
-        chord.im,
-        0.25 * k0 * a * a * a - e0.cross(w1),
-        0.25 * k2 * b * b * b + e2.cross(w1),
-    ];
+    let left = [chord.re - 1.0, chord.im, 0.25 * k0 * a * a * a - e0.cross(w1), 0.25 * k2 * b * b * b + e2.cross(w1)];
     (rows, left)
 }
 

@@ -80,7 +80,13 @@ impl<'a> Run<'a> {
 
     fn tangent(&self, k: usize) -> Option<Vector> {
         let last = self.points.len() - 1;
-        let given = if k == 0 { self.given[0] } else if k == last { self.given[1] } else { None };
+        let given = if k == 0 {
+            self.given[0]
+        } else if k == last {
+            self.given[1]
+        } else {
+            None
+        };
         given.or_else(|| tangent(self.points, k, TANGENT * self.tolerance))
     }
 
@@ -119,7 +125,12 @@ impl<'a> Run<'a> {
 }
 
 /// The longest success from `from` on that doubling and halving the stride find.
-pub(super) fn longest<T>(attempt: &mut impl FnMut(usize) -> Option<T>, from: usize, last: usize, guess: usize) -> Option<T> {
+pub(super) fn longest<T>(
+    attempt: &mut impl FnMut(usize) -> Option<T>,
+    from: usize,
+    last: usize,
+    guess: usize,
+) -> Option<T> {
     /// A last stride that is this part of the way says nothing more.
     const FINE: usize = 16;
     let mut best: Option<(usize, T)> = None;

@@ -1,0 +1,144 @@
+//! Fitted programs in the contour form.
+//!
+//! A contour is one chain of cuts at one height, so a program may hold several: they end where the tool moves in z, in rapid, or at another
+//! feed.
+
+use std::fmt::Write as _;
+
+use super::Curve;
+use super::program::Step;
+use super::vector::Vector;
+use crate::program::{Action, Arc, Feed, Motion, Plane};
+
+/// One contour.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Chain {
+    /// Its feed in mm/s.
+    pub feed: f64,
+    /// Where it begins.
+    pub start: Vector,
+    /// Where it ends.
+    pub end: Vector,
+    segments: Vec<String>,
+}
+
+/// Why steps make no contour.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Unfit {
+    /// A cut has no feed per minute.
+    NoFeed,
+    /// A curve other than a line, an arc or a fitted one.
+    Curve,
+    /// A curve that is not at one height.
+    Height,
+}
+
+impl std::fmt::Display for Unfit {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::NoFeed => "a contour needs a feed per minute; give F before the first cut",
+            Self::Curve => "the contour form takes lines and arcs of a program; write to .mpf instead",
+            Self::Height => "a curve changes its height, and a contour has none; write to .mpf instead",
+        })
+    }
+}
+
+/// Heights, and ends, that are the same, in mm.
+const SAME: f64 = 1e-9;
+
+/// Collects contours.
+#[derive(Clone, Debug, Default)]
+pub struct Chains {
+    /// Those that have ended, and the last one.
+    pub chains: Vec<Chain>,
+    is_open: bool,
+}
+
+impl Chains {
+    /// Takes a step of a fitted program. Errors: it is none of a contour.
+    pub fn take(&mut self, step: &Step<'_>) -> Result<(), Unfit> {
+        match step {
+            Step::Curves { fit, feed } => fit.parts.iter().try_for_each(|part| self.curve(&part.curve, *feed)),
+            Step::Kept(item) => match item.action {
+                Action::Motion(Motion::Arc(arc)) => self.arc(&arc, Vector(item.from), item.feed),
+                Action::Motion(Motion::Bezier { .. } | Motion::Nurbs(_)) => Err(Unfit::Curve),
+                Action::Motion(Motion::Rapid { .. } | Motion::Line { .. }) => {
+                    self.is_open = false;
+                    Ok(())
+                }
+                _ => Ok(()),
+            },
+        }
+    }
+
+    fn curve(&mut self, curve: &Curve, feed: Feed) -> Result<(), Unfit> {
+        let (points, text) = match curve {
+            Curve::Line(line) => {
+                let [start, end] = line.points;
+                if (start.0[2] - end.0[2]).abs() > SAME {
+                    self.is_open = false;
+                    return Ok(());
+                }
+                (line.points.to_vec(), format!("line = {{ to = {} }}", flat(end)))
+            }
+            Curve::Cubic(cubic) => {
+                let [_, a, b, c] = cubic.points;
+                (cubic.points.to_vec(), format!("bezier = {{ points = [{}, {}, {}] }}", flat(a), flat(b), flat(c)))
+            }
+            Curve::Ph(ph) => {
+                let [a, b, c] = ph.plane.w.map(|w| format!("[{:?}, {:?}]", w.re, w.im));
+                (ph.bezier().points.to_vec(), format!("ph = {{ w = [{a}, {b}, {c}] }}"))
+            }
+        };
+        if points.iter().any(|point| (point.0[2] - points[0].0[2]).abs() > SAME) {
+            return Err(Unfit::Height);
+        }
+        self.push([points[0], points[points.len() - 1]], text, feed)
+    }
+
+    fn arc(&mut self, arc: &Arc, from: Vector, feed: Feed) -> Result<(), Unfit> {
+        let to = Vector(arc.to);
+        if arc.plane != Plane::Xy || (to.0[2] - from.0[2]).abs() > SAME || arc.turns > 0 {
+            return Err(Unfit::Height);
+        }
+        let [x, y] = arc.centre;
+        let text = format!("arc = {{ to = {}, centre = [{x:?}, {y:?}], ccw = {} }}", flat(to), arc.sweep > 0.0);
+        self.push([from, to], text, feed)
+    }
+
+    fn push(&mut self, [start, end]: [Vector; 2], text: String, feed: Feed) -> Result<(), Unfit> {
+        let Feed::Rate(feed) = feed else { return Err(Unfit::NoFeed) };
+        match self.chains.last_mut().filter(|chain| self.is_open && chain.feed == feed) {
+            Some(chain) => {
+                chain.end = end;
+                chain.segments.push(text);
+            }
+            None => self.chains.push(Chain { feed, start, end, segments: vec![text] }),
+        }
+        self.is_open = true;
+        Ok(())
+    }
+}
+
+fn flat(point: Vector) -> String {
+    format!("[{:?}, {:?}]", point.0[0], point.0[1])
+}
+
+impl Chain {
+    /// How many segments it has.
+    pub fn segments(&self) -> usize {
+        self.segments.len()
+    }
+
+    /// The contour form of it, in mm and mm/min.
+    pub fn to_toml(&self) -> String {
+        let closed = (self.end - self.start).norm() < SAME;
+        let mut text = format!("units = \"mm\"\nclosed = {closed}\n\n[feed]\nrate = {:?}\n", self.feed * 60.0);
+        for (number, segment) in self.segments.iter().enumerate() {
+            let start = if number == 0 { format!("start = {}, ", flat(self.start)) } else { String::new() };
+            // Writing to a string does not fail.
+            let _ = write!(text, "\n[[segment]]\n{}\n", segment.replacen("{ ", &format!("{{ {start}"), 1));
+        }
+        text
+    }
+}
