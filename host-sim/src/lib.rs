@@ -6,7 +6,7 @@
 //! | --- | --- |
 //! | [`units`] | millimetres and inches, at the border |
 //! | [`input`] | files as they are read, and errors that name file, line and column |
-//! | [`program`] | programs, one motion after another: RS-274, cutter-location files, Sinumerik; and written |
+//! | [`program`] | programs, one motion after another: RS-274, cutter-location files, Sinumerik, drawings; and written |
 //! | [`contour`] | the part's curve: segments and nodes |
 //! | [`offset`] | the exact trimmed offset of a contour |
 //! | [`spline`] | splines through points, and ways to drive them at a constant feed |

@@ -10,6 +10,7 @@
 //! | [`rs274`] | G-code as LinuxCNC and Grbl speak it |
 //! | [`apt`] | cutter-location files of CAM systems |
 //! | [`sinumerik`] | programs for the Sinumerik 840D, with B-splines |
+//! | [`drawing`] | the curves of SVG and DXF drawings |
 //! | [`write`] | programs of one's own, from the same motions |
 //!
 //! Coordinates are those of the *program*: of the tool's tip in the coordinate system that is active when the program
@@ -18,6 +19,7 @@
 pub mod apt;
 mod arc;
 mod bspline;
+pub mod drawing;
 pub mod item;
 mod lines;
 mod number;
