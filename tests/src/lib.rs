@@ -12,7 +12,7 @@
 //! For the link: [`noisy_line`] loses, doubles, reorders, damages and cuts frames; [`link_script`] makes conversations of any bytes, and
 //! [`strict_machine`] stands behind the endpoint and trusts nothing that it is handed. The targets of `fuzz/` use both.
 //!
-//! [`stopwatch`] serves ratios of times.
+//! For fits: [`two_sided`] measures curves beside the polylines that they stand for. [`stopwatch`] serves ratios of times.
 #![forbid(unsafe_code)]
 
 pub mod bench;
@@ -32,6 +32,7 @@ pub mod simple;
 pub mod stock;
 pub mod stopwatch;
 pub mod strict_machine;
+pub mod two_sided;
 pub mod winding;
 
 pub use draft::Draft;

@@ -20,7 +20,7 @@ use super::output::{create, failed, json, write};
 /// Lay curves through the lines of a program, under a tolerance that holds both ways
 #[derive(Args)]
 #[command(
-    after_help = "Examples:\n  hodograph fit examples/spoon.ngc --tolerance 0.01 --curve ph -o spoon.toml\n  hodograph fit part.nc --tolerance 0.01 --curve bspline -o part.mpf --json -"
+    after_help = "Examples:\n  hodograph fit examples/heart.ngc --tolerance 0.01 --curve ph -o heart.toml\n  hodograph fit part.nc --tolerance 0.01 --curve bspline -o part.mpf --json -"
 )]
 pub struct FitVerb {
     /// The program: .nc .ngc .gcode .tap (RS-274), .mpf .spf (Sinumerik), .apt .cls (cutter location)

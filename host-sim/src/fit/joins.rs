@@ -1,6 +1,7 @@
 //! How smoothly the curves of a fit go on from one to the next, from the curves themselves.
 
 use super::curve::{Bezier, Local};
+use super::vector::Vector;
 use super::{Curve, Part};
 
 /// The largest breaks where curves should go on smoothly.
@@ -23,15 +24,19 @@ pub fn joins(parts: &[Part]) -> Joins {
         if !after.is_smooth {
             continue;
         }
-        let (end, start) = (before.curve.at(1.0), after.curve.at(0.0));
-        if let (Some(a), Some(b)) = (end.tangent(), start.tangent()) {
-            found.tangent = found.tangent.max(a.cross(b).norm().atan2(a.dot(b)));
-        }
-        let (a, b) = (end.curvature(), start.curvature());
-        let largest = a.norm().max(b.norm()).max(STRAIGHT);
-        found.curvature = found.curvature.max((a - b).norm() / largest);
+        let here = break_between(&before.curve.at(1.0), &after.curve.at(0.0));
+        found.tangent = found.tangent.max(here.tangent);
+        found.curvature = found.curvature.max(here.curvature);
     }
     found
+}
+
+/// The breaks from one curve's end to another's start; none of a direction that a curve does not have.
+pub fn break_between(end: &Local, start: &Local) -> Joins {
+    let angle = |(a, b): (Vector, Vector)| a.cross(b).norm().atan2(a.dot(b));
+    let (a, b) = (end.curvature(), start.curvature());
+    let largest = a.norm().max(b.norm()).max(STRAIGHT);
+    Joins { tangent: end.tangent().zip(start.tangent()).map_or(0.0, angle), curvature: (a - b).norm() / largest }
 }
 
 impl Curve {

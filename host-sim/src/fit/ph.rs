@@ -10,6 +10,7 @@ use shared::curve::PhQuintic;
 
 use super::bspline::{self, Bspline, across};
 use super::curve::Bezier;
+use super::joins::break_between;
 use super::piecewise::longest;
 use super::polyline::Polyline;
 use super::vector::Vector;
@@ -86,9 +87,7 @@ fn rise(plane: &PhQuintic<f64>, from: &Node, to: &Node) -> [f64; 6] {
 /// stay, which share point, tangent and curvature with it. The error is as that of [`bspline::fit`].
 pub(super) fn fit(line: &Polyline<'_>, first: usize, tolerance: f64, parts: &mut Vec<Part>) -> Result<(), usize> {
     let (spline, _) = bspline::fit(line, SPLINE * tolerance)?;
-    let mut ways: Vec<f64> = line.ways.iter().chain(spline.breaks()).copied().collect();
-    ways.sort_by(f64::total_cmp);
-    ways.dedup_by(|a, b| *a - *b < 1e-9 * line.length());
+    let ways = candidates(line, &spline);
     let nodes: Vec<Option<Node>> = ways.iter().map(|&way| Node::of(&spline, way)).collect();
     let last = ways.len() - 1;
     let (mut from, mut guess) = (0, 8);
@@ -96,10 +95,8 @@ pub(super) fn fit(line: &Polyline<'_>, first: usize, tolerance: f64, parts: &mut
     while from < last {
         let mut attempt = |to: usize| {
             let (start, end) = (nodes[from].as_ref()?, nodes[to].as_ref()?);
-            let plane = hermite(start, end)?;
-            let curve = RisingPh { plane, z: rise(&plane, start, end) };
-            let deviation = across(line, &curve.bezier(), [ways[from], ways[to]], tolerance);
-            (deviation <= tolerance).then_some((Curve::Ph(curve), deviation, to))
+            let (curve, deviation) = between(line, &spline, [start, end], [ways[from], ways[to]], tolerance)?;
+            Some((curve, deviation, to))
         };
         let to = match longest(&mut attempt, from, last, guess) {
             Some((curve, deviation, to)) => {
@@ -111,7 +108,8 @@ pub(super) fn fit(line: &Polyline<'_>, first: usize, tolerance: f64, parts: &mut
                 let ends = spline.breaks();
                 let end = ends[ends.partition_point(|&at| at <= ways[from]).min(ends.len() - 1)];
                 let to = ways.partition_point(|&way| way < end).clamp(from + 1, last);
-                in_parts(line, &spline, [ways[from], ways[to]], tolerance, HALVINGS, &mut found);
+                let part = [ways[from], ways[to]];
+                found.push((part, Curve::Cubic(spline.part(part)), SPLINE * tolerance));
                 to
             }
         };
@@ -125,47 +123,53 @@ pub(super) fn fit(line: &Polyline<'_>, first: usize, tolerance: f64, parts: &mut
     Ok(())
 }
 
-/// How often a span is halved before its cubics stay.
-const HALVINGS: u32 = 6;
+/// What a curve's ends may differ in from the spline that it follows: mm, radians, and parts of the curvature.
+const FAITHFUL: [f64; 3] = [1e-10, 1e-8, 1e-7];
 
-/// A curve over an interval of ways, and its deviation.
-type Found = ([f64; 2], Curve, f64);
-
-/// Lays PH quintics along the halves, quarters and so on of a span's part.
-fn in_parts(
+/// The curve between two nodes where it follows within the tolerance and goes on from its neighbours; and its deviation.
+fn between(
     line: &Polyline<'_>,
     spline: &Bspline,
+    [start, end]: [&Node; 2],
     ways: [f64; 2],
     tolerance: f64,
-    halvings: u32,
-    found: &mut Vec<Found>,
-) {
-    let nodes = ways.map(|way| Node::of(spline, way));
-    if let [Some(start), Some(end)] = nodes {
-        let rising = hermite(&start, &end).map(|plane| RisingPh { plane, z: rise(&plane, &start, &end) });
-        let near = |curve: &RisingPh| across(line, &curve.bezier(), ways, tolerance);
-        if let Some(curve) = rising
-            && let deviation = near(&curve)
-            && deviation <= tolerance
-        {
-            found.push((ways, Curve::Ph(curve), deviation));
-            return;
-        }
+) -> Option<(Curve, f64)> {
+    let plane = hermite(start, end)?;
+    let curve = RisingPh { plane, z: rise(&plane, start, end) };
+    let bezier = curve.bezier();
+    let is_faithful = |t: f64, way: f64| {
+        let (found, wanted) = (bezier.at(t), spline.at(way));
+        let broken = break_between(&found, &wanted);
+        (found.point - wanted.point).norm() < FAITHFUL[0]
+            && broken.tangent < FAITHFUL[1]
+            && broken.curvature < FAITHFUL[2]
+    };
+    if !(is_faithful(0.0, ways[0]) && is_faithful(1.0, ways[1])) {
+        return None;
     }
-    if halvings == 0 || nodes.contains(&None) {
-        found.push((ways, Curve::Cubic(spline.part(ways)), SPLINE * tolerance));
-        return;
-    }
-    let middle = 0.5 * (ways[0] + ways[1]);
-    for half in [[ways[0], middle], [middle, ways[1]]] {
-        in_parts(line, spline, half, tolerance, halvings - 1, found);
-    }
+    let deviation = across(line, &bezier, ways, tolerance);
+    (deviation <= tolerance).then_some((Curve::Ph(curve), deviation))
+}
+
+/// Where a segment may end: at the ends of the spline's spans, and at vertices that are not next to one.
+fn candidates(line: &Polyline<'_>, spline: &Bspline) -> Vec<f64> {
+    /// In mm: the curvature of a shorter curve drowns in the digits of its points.
+    const NEXT: f64 = 2e-3;
+    let breaks = spline.breaks();
+    let is_apart = |way: f64| {
+        let behind = breaks.partition_point(|&at| at < way);
+        let near = |at: Option<&f64>| at.is_some_and(|at| (at - way).abs() < NEXT);
+        !near(breaks.get(behind)) && !near(behind.checked_sub(1).and_then(|k| breaks.get(k)))
+    };
+    let mut ways: Vec<f64> = line.ways.iter().copied().filter(|&way| is_apart(way)).chain(breaks.to_vec()).collect();
+    ways.sort_by(f64::total_cmp);
+    ways
 }
 
 /// Newton's steps at the most.
 const STEPS: usize = 30;
 
-/// What is left of the conditions, in parts of the chord and of the curvature times the chord.
+/// What may be left of the conditions once steps make it no smaller, in parts of the chord and of a turn.
 const EXACT: f64 = 1e-11;
 
 /// The segment between two nodes; none where none is near.
@@ -182,17 +186,19 @@ pub(super) fn hermite(from: &Node, to: &Node) -> Option<PhQuintic<f64>> {
     // a, b and w1: as if the curve were passed evenly.
     let even = (2.0 / (turned(from.tangent).re + turned(to.tangent).re)).powf(0.25);
     let mut x = [even, even, even, 0.25 * (curvatures[0] - curvatures[1]) * 0.5];
+    let mut before = f64::INFINITY;
     for _ in 0..STEPS {
         let (rows, left) = conditions(x, [e0, e2], curvatures);
         let size = left.iter().map(|left| left.abs()).fold(0.0, f64::max);
-        if size < EXACT {
+        if size > 1e3 || size.is_nan() {
+            return None;
+        }
+        if size == 0.0 || (size < EXACT && size > 0.5 * before) {
             let back = (chord * (1.0 / length)).sqrt() * length.sqrt();
             let w = [e0 * x[0], Complex::new(x[2], x[3]), e2 * x[1]].map(|w| w * back);
             return (x[0] > 0.0 && x[1] > 0.0).then_some(PhQuintic { start: from.point, w });
         }
-        if size > 1e3 || size.is_nan() {
-            return None;
-        }
+        before = size;
         // The least step that would do: on a straight way the speeds along it are open.
         let step = least_step(&rows, &left)?;
         let longest = step.iter().map(|step| step.abs()).fold(0.0, f64::max);
