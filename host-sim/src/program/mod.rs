@@ -11,7 +11,7 @@
 //! | [`apt`] | cutter-location files of CAM systems |
 //! | [`sinumerik`] | programs for the Sinumerik 840D, with B-splines |
 //! | [`drawing`] | the curves of SVG and DXF drawings |
-//! | [`write`] | programs of one's own, from the same motions |
+//! | [`mod@write`] | programs of one's own, from the same motions |
 //!
 //! Coordinates are those of the *program*: of the tool's tip in the coordinate system that is active when the program
 //! begins. Other systems, G92 and machine coordinates are brought into that one frame, so the items are one coherent path.

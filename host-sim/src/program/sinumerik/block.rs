@@ -8,7 +8,7 @@ use crate::units::Units;
 
 /// The most M words of a block.
 const MOST_M: usize = 5;
-/// Names that say how smoothly or with which looks ahead a control runs a path, and none that says where it runs. The
+/// Names that say how smoothly a control runs a path, or that nothing turns its coordinates; none says where it runs. The
 /// compressors may leave the path within a tolerance; they need not.
 const SILENT: [&str; 32] = [
     "SOFT",

@@ -36,9 +36,9 @@
 //!
 //! # What else is read
 //!
-//! G0 to G4, G9 to G19 for planes, G40 to G42, G60, G64 and G641 to G645, G70 G71 G700 G710, G90 G91, G93 G94, I J K, CR=, TURN=,
-//! F S T, M0 to M9, M17, M30, N, `:`, `/`, `;`, `%` lines and MSG. D is left out, as are words that only say how smoothly a
-//! control runs ([`read`] runs the path itself). One of G54 to G57, G500 may be named, the same all through: coordinates are
+//! G0 to G4, G17 to G19, G40 to G42, G60, G64 and G641 to G645, G70 G71 G700 G710, G90 G91, G93 G94, I J K, CR=, TURN=, F S T,
+//! M0 to M9, M17, M30, N, `:`, `/`, `;`, `%` lines and MSG. D is left out, as are words that only say how smoothly a
+//! control runs a path (SOFT, COMPCAD, G601). One of G54 to G57, G500 may be named, the same all through: coordinates are
 //! those of this one system. Any other word is an error that names it, among them tool orientation (ORIWKS, TRAORI, A3=),
 //! axes other than X, Y, Z, cycles, R parameters and expressions.
 //!

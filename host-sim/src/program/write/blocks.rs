@@ -64,6 +64,12 @@ pub fn decimals(value: f64) -> String {
     if text == "-0" { "0".to_string() } else { text.to_string() }
 }
 
+/// What a reader finds in [`decimals`] of a length, but for its last bits.
+pub fn rounded(value: f64) -> f64 {
+    const STEPS: f64 = 1e10;
+    (value * STEPS).round() / STEPS
+}
+
 /// A number with ten digits that say something: for feeds, which come out of a division by 60.
 pub fn significant(value: f64) -> String {
     // The text has an exponent, which programs do not; it is a number that the standard library reads back.

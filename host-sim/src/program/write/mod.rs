@@ -113,7 +113,8 @@ impl std::error::Error for WriteError {}
 
 /// Places that are nearer than this, in mm, are one.
 const SAME: f64 = 1e-9;
-/// An arc within this angle is a line: readers would take it for a full circle, and it bulges by less than 1e-12 of its radius.
+/// An arc within this angle is a line, as is one within [`SAME`]: readers would take it for a full circle or for none, and it
+/// bulges by less than 1e-12 of its radius.
 const FLAT: f64 = 2e-6;
 /// Angles may differ by this much: the ends of a program's arcs are rounded.
 const ANGLE: f64 = 1e-5;
@@ -237,20 +238,25 @@ impl<W: Write> Writer<W> {
 
     /// G2 and G3.
     fn arc(&mut self, from: [f64; 3], feed: Feed, arc: &Arc) -> Result<(), WriteError> {
-        if arc.turns == 0 && arc.sweep.abs() < FLAT {
-            return self.straight("G1", arc.to, feed);
-        }
         check(&arc.to)?;
         check(&arc.centre)?;
         let [first, second, _] = arc.plane.axes();
+        let radius = (from[first] - arc.centre[0]).hypot(from[second] - arc.centre[1]);
+        let short = arc.sweep.abs() < FLAT || arc.sweep.abs() * radius <= SAME;
+        if (short && arc.turns == 0) || 2.0 * radius <= SAME {
+            return self.straight("G1", arc.to, feed);
+        }
+        // The angle is what a reader finds, of the digits that are written.
         let ends = Ends {
-            from: [from[first], from[second]],
-            to: [arc.to[first], arc.to[second]],
+            from: [from[first], from[second]].map(blocks::rounded),
+            to: [arc.to[first], arc.to[second]].map(blocks::rounded),
             anticlockwise: arc.sweep > 0.0,
             turns: arc.turns,
         };
-        let angle = ends.about(arc.centre, 1.0).map_err(|_| WriteError::Arc)?;
-        if (angle - arc.sweep).abs() > ANGLE {
+        let offset = [arc.centre[0] - from[first], arc.centre[1] - from[second]];
+        let centre = std::array::from_fn(|k| ends.from[k] + blocks::rounded(offset[k]));
+        let angle = ends.about(centre, 1.0).map_err(|_| WriteError::Arc)?;
+        if (angle - arc.sweep).abs() * radius > ANGLE * radius + SAME {
             return Err(WriteError::Arc);
         }
         self.spline = false;
@@ -259,8 +265,8 @@ impl<W: Write> Writer<W> {
         for (letter, value) in ["X", "Y", "Z"].into_iter().zip(arc.to) {
             self.blocks.valued(letter, &blocks::decimals(value));
         }
-        for (axis, centre) in [first, second].into_iter().zip(arc.centre) {
-            self.blocks.valued(["I", "J", "K"][axis], &blocks::decimals(centre - from[axis]));
+        for (axis, offset) in [first, second].into_iter().zip(offset) {
+            self.blocks.valued(["I", "J", "K"][axis], &blocks::decimals(offset));
         }
         if arc.turns > 0 {
             match self.dialect {

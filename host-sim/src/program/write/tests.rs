@@ -344,3 +344,18 @@ fn each_fault_is_found_and_nothing_of_it_is_written() {
     let result = writer.motion([0.0; 3], rate, &Motion::Line { to: [2.0, 0.0, 0.0] });
     assert_eq!(result, Err(WriteError::Gap(1.0)));
 }
+
+/// Found by fuzzing: an arc that is smaller than the digits of a program would be none, or a whole circle.
+#[test]
+fn arcs_too_small_for_digits_are_lines() {
+    for (radius, sweep) in [(1e-29, TAU), (1e-12, 3.0), (1e-5, 3e-6), (1000.0, 1e-7), (1e-10, 3.0 * TAU)] {
+        let to = [radius * f64::cos(sweep), radius * f64::sin(sweep), 5.0];
+        let turns = if sweep > TAU { 2 } else { 0 };
+        let arc = Arc { plane: Plane::Xy, centre: [0.0; 2], to, sweep, turns };
+        for dialect in [Dialect::Rs274, Dialect::Sinumerik] {
+            let chain: Chain = vec![([radius, 0.0, 0.0], Feed::Rate(1.0), Own::Arc(arc))];
+            let back = read(&written(&chain, dialect, Settings::default()).unwrap(), dialect);
+            assert!(matches!(&back[..], [_, (_, Own::Line(end))] if near(end, &to, CLOSE)), "{back:?}");
+        }
+    }
+}

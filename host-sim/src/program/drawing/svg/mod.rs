@@ -11,7 +11,7 @@
 //!
 //! The crate holds coordinates as `f32`: a drawing of 300 mm is on a grid of about 20 nm. It turns circles, ellipses, round
 //! corners and arcs of paths into cubic curves, which leave a circle by up to 0.00028 of its radius. A cubic curve whose
-//! control points are those of a circle's part is therefore taken for that arc ([`round`]); parts of ellipses stay cubic curves.
+//! control points are those of a circle's part is therefore taken for that arc (`round`); parts of ellipses stay cubic curves.
 
 mod round;
 #[cfg(test)]
