@@ -65,7 +65,8 @@ struct Found {
 /// Where steps go.
 enum Target {
     Nothing,
-    Program(Box<Writer<Box<dyn Write>>>),
+    /// And how many events had no place in it.
+    Program(Box<Writer<Box<dyn Write>>>, usize),
     Contours(Chains),
 }
 
@@ -120,13 +121,18 @@ impl FitVerb {
         }?;
         let summary = fitter.finish().map_err(|message| InputError::new(&self.input, message))?;
         bar.finish_and_clear();
-        if let Target::Program(writer) = target {
+        if let Target::Program(writer, left) = target {
             let name = self.output.as_deref().unwrap_or_default();
             let mut out = writer.finish().map_err(|error| failed(name, error))?;
             out.flush().map_err(|error| failed(name, error))?;
             drop(out);
             if name != "-" {
                 fs::rename(unfinished(name), name).map_err(|error| failed(name, error))?;
+            }
+            if left > 0 {
+                eprintln!(
+                    "{name}: {left} events (spindle, coolant, tool, dwell, path mode) are not in it; add them by hand"
+                );
             }
             target = Target::Nothing;
         }
@@ -150,7 +156,7 @@ impl FitVerb {
         }
         let out = create(&unfinished(name))?;
         let writer = Writer::new(out, dialect, Settings::default()).map_err(|error| failed(name, error))?;
-        Ok(Target::Program(Box::new(writer)))
+        Ok(Target::Program(Box::new(writer), 0))
     }
 
     /// Takes back what was begun.
@@ -183,13 +189,17 @@ impl Target {
         match self {
             Self::Nothing => Ok(()),
             Self::Contours(chains) => chains.take(step).map_err(|error| error.to_string()),
-            Self::Program(writer) => match step {
+            Self::Program(writer, left) => match step {
                 Step::Curves { fit, feed } => curves(writer, fit, *feed).map_err(|error| error.to_string()),
                 Step::Kept(item) => match item.action {
                     Action::Motion(motion) => {
                         writer.motion(item.from, item.feed, &motion).map_err(|error| error.to_string())
                     }
-                    _ => Ok(()),
+                    Action::End => Ok(()),
+                    _ => {
+                        *left += 1;
+                        Ok(())
+                    }
                 },
             },
         }

@@ -1,0 +1,95 @@
+//! `hodograph fit` as a person runs it: a program becomes a contour that runs, and programs that are read back; bad input is a sentence.
+
+#![allow(clippy::unwrap_used, reason = "a failed test says where")]
+
+mod common;
+
+use common::{file, nowhere, run, says};
+use serde_json::Value;
+
+const HEART: &str = include_str!("../../examples/heart.ngc");
+
+fn found(output: &std::process::Output) -> Value {
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    serde_json::from_slice(&output.stdout).unwrap()
+}
+
+/// The example's 720 lines are a contour of a few PH curves, whose simulation is as long as the lines.
+#[test]
+fn the_example_becomes_a_contour_that_runs() {
+    let program = file("fit-heart.ngc", HEART);
+    let contour = nowhere("fit-heart.toml");
+    let options = ["--tolerance", "0.01", "-o", contour.to_str().unwrap(), "--json", "-"];
+    let fitted = found(&run("fit", &program, &options));
+    let number = |key: &str| fitted[key].as_f64().unwrap();
+    assert!(number("segments") < 40.0 && number("lines") > 700.0, "{fitted}");
+    assert!(number("max_deviation") <= 0.01 && number("max_curvature_jump") < 1e-6, "{fitted}");
+    let simulated = found(&run("simulate", &contour, &["--json", "-"]));
+    let length = simulated["contact_length"].as_f64().unwrap();
+    // The lines' own length.
+    let mut at: Option<[f64; 2]> = None;
+    let mut lines = 0.0;
+    for line in HEART.lines().filter(|line| line.contains('X') && !line.contains("G0")) {
+        let word = |letter: char| {
+            let text = line.split(letter).nth(1).unwrap();
+            text.split(' ').next().unwrap().parse::<f64>().unwrap()
+        };
+        let next = [word('X'), word('Y')];
+        if let Some(at) = at {
+            lines += (next[0] - at[0]).hypot(next[1] - at[1]);
+        }
+        at = Some(next);
+    }
+    assert!((length / lines - 1.0).abs() < 1e-3, "{length} {lines}");
+}
+
+/// What is written is read back: the same number of curves from it, none of them fitted again, and no less smooth.
+#[test]
+fn programs_are_read_back() {
+    let program = file("fit-back.ngc", HEART);
+    for (curve, ending) in [("bezier", "nc"), ("bezier", "mpf"), ("bspline", "mpf"), ("bspline", "ngc")] {
+        let name = format!("fit-back-{curve}.{ending}");
+        let written = nowhere(&name);
+        let options = ["--tolerance", "0.01", "--curve", curve, "-o", written.to_str().unwrap(), "--json", "-"];
+        let output = run("fit", &program, &options);
+        let fitted = found(&output);
+        // The spindle has no place in it, and that is said.
+        assert!(String::from_utf8_lossy(&output.stderr).contains("events"), "{name}");
+        let back = found(&run("fit", &written, &["--tolerance", "0.01", "--json", "-"]));
+        let lines = back["lines"].as_u64().unwrap();
+        assert!(lines <= 2 && back["other_motions"].as_u64().unwrap() > 2, "{name}: {back} of {fitted}");
+        assert!(!nowhere(&format!("{name}.part")).exists());
+    }
+}
+
+#[test]
+fn bad_input_is_a_sentence() {
+    let heart = file("fit-bad.ngc", HEART);
+    let broken = file("fit-broken.ngc", "G21\nF100\nG1 X1\nG1 X2 Y(oh\n");
+    let two = file("fit-two.ngc", "G21 F100\nG1 X10\nG0 X20\nG1 Y10\n");
+    let part = file("fit-part.xyz", "G1 X1\n");
+    let rise = file("fit-rise.ngc", "G21 F100\nG2 X2 Y0 I1 Z5\n");
+    let toml = nowhere("fit-bad.toml");
+    let toml = toml.to_str().unwrap();
+    let mpf = nowhere("fit-bad.mpf");
+    let mpf = mpf.to_str().unwrap();
+    let cases: [(&str, &std::path::Path, &[&str], &[&str]); 8] = [
+        ("tolerance", &heart, &["--tolerance", "0", "-o", toml], &["--tolerance", "above zero"]),
+        ("negative", &heart, &["--tolerance", "-0.1", "-o", toml], &["-0.1", "above zero"]),
+        ("ending", &part, &["--tolerance", "0.01", "-o", toml], &["fit-part.xyz", "xyz", ".ngc"]),
+        ("result", &heart, &["--tolerance", "0.01", "-o", "heart.step"], &["heart.step", ".toml"]),
+        ("words", &heart, &["--tolerance", "0.01", "--curve", "ph", "-o", mpf], &["PH", ".toml", "bspline"]),
+        ("block", &broken, &["--tolerance", "0.01", "--curve", "bspline", "-o", mpf], &["fit-broken.ngc:4:"]),
+        ("contours", &two, &["--tolerance", "0.01", "-o", toml], &["2 contours", "--contour 0 to 1"]),
+        ("height", &rise, &["--tolerance", "0.01", "-o", toml], &["fit-rise.ngc:2:", "height"]),
+    ];
+    for (name, input, options, words) in cases {
+        let output = run("fit", input, options);
+        let errors = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(2), "{name}: {errors}");
+        says(name, &errors, words);
+        for written in [toml, mpf, &format!("{mpf}.part")] {
+            assert!(!std::path::Path::new(written).exists(), "{name}: something was written");
+        }
+    }
+}
