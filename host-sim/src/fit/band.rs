@@ -54,8 +54,8 @@ impl Band {
             let row = self.rows[k];
             for step in 1..WIDTH.min(count - k) {
                 let factor = row[step] / pivot;
-                for column in step..WIDTH {
-                    self.rows[k + step][column - step] -= factor * row[column];
+                for (below, entry) in self.rows[k + step].iter_mut().zip(&row[step..]) {
+                    *below -= factor * entry;
                 }
                 self.right[k + step] = self.right[k + step] - self.right[k] * factor;
             }

@@ -67,11 +67,11 @@ impl<const N: usize> Bezier<N> {
     /// The parts before and behind a parameter.
     pub fn split(&self, t: f64) -> [Self; 2] {
         let (mut low, mut high) = (self.points, self.points);
-        for step in 1..N {
+        for (step, low) in low.iter_mut().enumerate().skip(1) {
             for k in 0..N - step {
                 high[k] = high[k].toward(high[k + 1], t);
             }
-            low[step] = high[0];
+            *low = high[0];
         }
         [Self { points: low }, Self { points: high }]
     }

@@ -239,15 +239,14 @@ fn least_step(rows: &[[f64; 4]; 4], right: &[f64; 4]) -> Option<[f64; 4]> {
     }
     let mut y = *right;
     for k in 0..4 {
-        let pivot = matrix[k][k];
+        let top = matrix[k];
+        let pivot = top[k];
         if pivot.is_nan() || pivot <= 0.0 {
             return None;
         }
         for row in k + 1..4 {
             let factor = matrix[row][k] / pivot;
-            for column in k..4 {
-                matrix[row][column] -= factor * matrix[k][column];
-            }
+            matrix[row].iter_mut().zip(top).for_each(|(entry, above)| *entry -= factor * above);
             y[row] -= factor * y[k];
         }
     }
