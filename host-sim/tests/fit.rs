@@ -41,6 +41,25 @@ fn the_example_becomes_a_contour_that_runs() {
         at = Some(next);
     }
     assert!((length / lines - 1.0).abs() < 1e-3, "{length} {lines}");
+    // The program itself is the same job.
+    let direct = found(&run("simulate", &program, &["--json", "-"]));
+    assert_eq!(direct["setpoint_hash"], simulated["setpoint_hash"]);
+}
+
+/// G64 P of a program is its tolerance: a tighter one keeps nearer to the lines, so it needs more pieces. A program of two contours is none.
+#[test]
+fn a_program_is_a_job() {
+    let pieces = |name: &str, tolerance: &str| {
+        let program = file(name, &HEART.replace("G90 G17", &format!("G90 G17 G64 P{tolerance}")));
+        let machine = concat!(env!("CARGO_MANIFEST_DIR"), "/../examples/machine.toml");
+        let options = ["--machine", machine, "--zero", "200,200", "--json", "-"];
+        found(&run("plan", &program, &options))["pieces"].as_u64().unwrap()
+    };
+    assert!(pieces("job-tight.ngc", "0.002") > pieces("job-loose.ngc", "0.05"));
+    let two = file("job-two.ngc", "G21 F100\nG1 X10\nG0 X20\nG1 Y10\n");
+    let output = run("simulate", &two, &[]);
+    assert_eq!(output.status.code(), Some(2));
+    says("two", &String::from_utf8(output.stderr).unwrap(), &["job-two.ngc", "2 contours", "hodograph fit"]);
 }
 
 /// What is written is read back: the same number of curves from it, none of them fitted again, and no less smooth.
@@ -57,7 +76,7 @@ fn programs_are_read_back() {
         assert!(String::from_utf8_lossy(&output.stderr).contains("events"), "{name}");
         let back = found(&run("fit", &written, &["--tolerance", "0.01", "--json", "-"]));
         let lines = back["lines"].as_u64().unwrap();
-        assert!(lines <= 2 && back["other_motions"].as_u64().unwrap() > 2, "{name}: {back} of {fitted}");
+        assert!(lines <= 4 && back["other_motions"].as_u64().unwrap() > 2, "{name}: {back} of {fitted}");
         assert!(!nowhere(&format!("{name}.part")).exists());
     }
 }

@@ -28,6 +28,7 @@ fn measured(what: &str, points: &[Vector], kind: Kind, tolerance: f64) -> usize 
     let [curves, lines] = two_sided(points, &parts);
     let bar = tolerance * (1.0 + 1e-9) + ROUNDING;
     assert!(curves <= bar && lines <= bar, "{what}, {kind:?} within {tolerance}: {curves} and {lines}");
+    assert!(parts.len() < points.len(), "{what}, {kind:?}: {} curves of {} points", parts.len(), points.len());
     let claimed = parts.iter().map(|part| part.deviation).fold(0.0, f64::max);
     assert!(claimed <= tolerance && curves.max(lines) <= claimed + ROUNDING, "{what}: {claimed} {curves} {lines}");
     let ends = [parts[0].curve.at(0.0).point, parts[parts.len() - 1].curve.at(1.0).point];

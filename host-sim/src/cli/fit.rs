@@ -4,7 +4,7 @@ use std::fs::{self, File};
 use std::io::{BufReader, Write};
 
 use clap::{Args, ValueEnum};
-use host_sim::fit::contour::Chains;
+use host_sim::fit::contour::{Chains, only};
 use host_sim::fit::program::{Fitter, Step, Summary};
 use host_sim::fit::{Curve, Fit, Kind};
 use host_sim::input::InputError;
@@ -81,7 +81,8 @@ impl FitVerb {
         let (target, summary) = self.fit().inspect_err(|_| self.forget())?;
         let found = Found { summary, tolerance, units: Units::Mm };
         if let (Target::Contours(chains), Some(name)) = (&target, &self.output) {
-            write(name, self.contour(chains)?.as_bytes())?;
+            let chain = only(&chains.chains, self.contour).map_err(|message| InputError::new(&self.input, message))?;
+            write(name, chain.to_toml().as_bytes())?;
         }
         if let Some(name) = &self.json {
             json(name, &found)?;
@@ -105,20 +106,7 @@ impl FitVerb {
         let input = BufReader::new(bar.wrap_read(file));
         let mut give = |step: Step<'_>| target.take(&step);
         let mut fitter = Fitter::new(kind, self.tolerance, &mut give);
-        let mut sink = |item: &program::Item<'_>| fitter.take(item);
-        match ending(&self.input) {
-            "nc" | "ngc" | "gcode" | "tap" => {
-                program::rs274::read(&self.input, input, &program::rs274::Settings::default(), &mut sink)
-            }
-            "mpf" | "spf" => {
-                program::sinumerik::read(&self.input, input, &program::sinumerik::Settings::default(), &mut sink)
-            }
-            "apt" | "cls" => program::apt::read(&self.input, input, Units::Mm, &mut sink),
-            other => Err(InputError::new(
-                &self.input,
-                format_args!("`{other}` is no ending of a program; .nc .ngc .gcode .tap .mpf .spf .apt .cls are"),
-            )),
-        }?;
+        program::read(&self.input, input, &mut |item| fitter.take(item))?;
         let summary = fitter.finish().map_err(|message| InputError::new(&self.input, message))?;
         bar.finish_and_clear();
         if let Target::Program(writer, left) = target {
@@ -164,21 +152,6 @@ impl FitVerb {
         if let Some(name) = self.output.as_deref().filter(|&name| name != "-") {
             // Where nothing was begun there is nothing to take back.
             let _ = fs::remove_file(unfinished(name));
-        }
-    }
-
-    /// The contour that was asked for.
-    fn contour(&self, found: &Chains) -> Result<String, InputError> {
-        let count = found.chains.len();
-        let refuse = |message: String| Err(InputError::new(&self.input, message));
-        match (self.contour, &found.chains[..]) {
-            (_, []) => refuse("there is no cut at one height, so no contour".to_string()),
-            (None, [only]) => Ok(only.to_toml()),
-            (None, _) => refuse(format!("there are {count} contours; --contour 0 to {} takes one", count - 1)),
-            (Some(number), chains) => match chains.get(number) {
-                Some(chain) => Ok(chain.to_toml()),
-                None => refuse(format!("there is no contour {number}; --contour 0 to {} takes one", count - 1)),
-            },
         }
     }
 }

@@ -22,6 +22,9 @@ pub struct Bspline {
 /// The places that a span is looked at in at least.
 const LOOKS: usize = 6;
 
+/// A spline that is slower than this turns back on itself: there is a cusp, and the polyline has a corner.
+const STANDING: f64 = 0.2;
+
 /// How often spans are halved.
 const ROUNDS: usize = 24;
 
@@ -60,6 +63,15 @@ impl Bspline {
         let [before, _] = self.span(k).split(end);
         let [_, part] = before.split(if end > 0.0 { start / end } else { 0.0 });
         part
+    }
+
+    /// The way at which it is slowest, of some looked at, and how fast it is there: 1 where it goes as far as its parameter.
+    fn slowest(&self) -> (f64, f64) {
+        let looks = self
+            .breaks()
+            .windows(2)
+            .flat_map(|ends| (0..LOOKS).map(|look| ends[0] + (ends[1] - ends[0]) * (look as f64 + 0.5) / LOOKS as f64));
+        looks.map(|way| (way, self.at(way).first.norm())).min_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or((0.0, 1.0))
     }
 
     /// Where it is at a way; derivatives are by the way.
@@ -102,7 +114,10 @@ pub(super) fn fit(line: &Polyline<'_>, tolerance: f64) -> Result<(Bspline, Vec<f
         if let Some(spline) = spline
             && worst <= tolerance
         {
-            return Ok((spline, deviations));
+            return match spline.slowest() {
+                (way, speed) if speed < STANDING && line.points.len() > 2 => Err(corner(line, way)),
+                _ => Ok((spline, deviations)),
+            };
         }
         let mut finer = Vec::with_capacity(2 * breaks.len());
         for (ends, &deviation) in breaks.windows(2).zip(&deviations) {

@@ -124,6 +124,21 @@ fn flat(point: Vector) -> String {
     format!("[{:?}, {:?}]", point.0[0], point.0[1])
 }
 
+/// The contour of that number, or the only one. The error is a sentence.
+pub fn only(chains: &[Chain], number: Option<usize>) -> Result<&Chain, String> {
+    let count = chains.len();
+    match (number, chains) {
+        (_, []) => Err("there is no cut at one height, so no contour".to_string()),
+        (None, [only]) => Ok(only),
+        (None, _) => {
+            Err(format!("there are {count} contours; `hodograph fit` with --contour 0 to {} takes one", count - 1))
+        }
+        (Some(number), _) => chains
+            .get(number)
+            .ok_or_else(|| format!("there is no contour {number}; --contour 0 to {} takes one", count - 1)),
+    }
+}
+
 impl Chain {
     /// How many segments it has.
     pub fn segments(&self) -> usize {

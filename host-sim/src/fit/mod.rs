@@ -85,6 +85,8 @@ pub struct Fit {
 }
 
 /// Fits curves to a polyline, none of whose points is repeated, within a tolerance in mm.
+///
+/// There are never more curves than lines.
 pub fn fit(points: &[Vector], kind: Kind, tolerance: f64) -> Fit {
     let mut found = Fit::default();
     if points.len() < 2 {
@@ -103,7 +105,8 @@ pub fn fit(points: &[Vector], kind: Kind, tolerance: f64) -> Fit {
     found
 }
 
-/// Fits the vertices between two corners. Where a vertex turns out to be a corner, both sides of it.
+/// Fits the vertices between two corners. Where a vertex turns out to be a corner, both sides of it; where more curves than lines would be
+/// needed, the lines stay.
 fn smooth(points: &[Vector], ends: [usize; 2], kind: Kind, tolerance: f64, found: &mut Fit) {
     let mut open = vec![ends];
     while let Some([from, to]) = open.pop() {
@@ -116,11 +119,11 @@ fn smooth(points: &[Vector], ends: [usize; 2], kind: Kind, tolerance: f64, found
             continue;
         }
         let line = Polyline::new(run);
+        let first = found.parts.len();
         let corner = if kind == Kind::Ph {
             ph::fit(&line, from, tolerance, &mut found.parts)
         } else {
             bspline::fit(&line, tolerance).map(|(spline, deviations)| {
-                let first = found.parts.len();
                 let spans = spline.breaks().windows(2).zip(deviations).enumerate();
                 found.parts.extend(spans.map(|(k, (ways, deviation))| {
                     let vertex = |way: f64, is_end: bool| from + line.segment(way) + usize::from(is_end);
@@ -133,6 +136,13 @@ fn smooth(points: &[Vector], ends: [usize; 2], kind: Kind, tolerance: f64, found
         };
         if let Err(corner) = corner {
             open.extend([[from + corner, to], [from, from + corner]]);
+        } else if found.parts.len() - first > to - from {
+            found.parts.truncate(first);
+            found.splines.pop_if(|(spans, _)| spans.start >= first);
+            found.parts.extend((from..to).map(|k| {
+                let curve = Curve::Line(Bezier { points: [points[k], points[k + 1]] });
+                Part { curve, vertices: [k, k + 1], deviation: 0.0, is_smooth: false }
+            }));
         }
     }
 }

@@ -19,6 +19,9 @@ const HOPE: f64 = 6.0;
 /// A handle is at least this part of a third of the chord.
 const SHORTEST: f64 = 0.05;
 
+/// A handle is at most this part of the chord: with longer ones a cubic may come to a cusp. Of half a circle they are two thirds.
+const LONGEST: f64 = 1.3;
+
 /// The part of the tolerance that the parabola of a tangent may be off.
 const TANGENT: f64 = 0.25;
 
@@ -218,6 +221,9 @@ fn handles(points: &[Vector], [start, end]: [Vector; 2], feet: &[f64]) -> Option
     } else {
         [chord / 3.0; 2]
     };
-    (alpha >= least && beta >= least)
+    let most = LONGEST * chord;
+    [alpha, beta]
+        .iter()
+        .all(|handle| (least..=most).contains(handle))
         .then(|| Bezier { points: [first, first + start * alpha, last - end * beta, last] })
 }

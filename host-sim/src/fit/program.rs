@@ -8,6 +8,7 @@ use serde::Serialize;
 use super::joins::joins;
 use super::vector::Vector;
 use super::{Fit, Kind, fit};
+use crate::program::item::PathMode;
 use crate::program::{Action, Feed, Item, Motion};
 
 /// What a program comes to, one after the other.
@@ -49,6 +50,8 @@ pub struct Fitter<'a> {
     tolerance: f64,
     points: Vec<Vector>,
     feed: Feed,
+    /// Whether the program may change the tolerance.
+    listens: bool,
     summary: Summary,
     sink: &'a mut dyn FnMut(Step<'_>) -> Result<(), String>,
 }
@@ -56,7 +59,20 @@ pub struct Fitter<'a> {
 impl<'a> Fitter<'a> {
     /// Gives what it makes to `sink`; the tolerance is in mm.
     pub fn new(kind: Kind, tolerance: f64, sink: &'a mut dyn FnMut(Step<'_>) -> Result<(), String>) -> Self {
-        Self { kind, tolerance, points: Vec::new(), feed: Feed::Unset, summary: Summary::default(), sink }
+        Self {
+            kind,
+            tolerance,
+            points: Vec::new(),
+            feed: Feed::Unset,
+            listens: false,
+            summary: Summary::default(),
+            sink,
+        }
+    }
+
+    /// Where the program says a tolerance itself (G64 P), that one holds from there on.
+    pub fn with_the_programs_tolerance(self) -> Self {
+        Self { listens: true, ..self }
     }
 
     /// The next item. Errors are those of the sink.
@@ -76,6 +92,12 @@ impl<'a> Fitter<'a> {
             return Ok(());
         }
         self.close()?;
+        if let Action::PathMode(PathMode::Blend { tolerance: Some(tolerance), .. }) = item.action
+            && self.listens
+            && tolerance > 0.0
+        {
+            self.tolerance = tolerance;
+        }
         if matches!(item.action, Action::Motion(_)) {
             self.summary.other_motions += 1;
         }

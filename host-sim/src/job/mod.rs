@@ -2,6 +2,7 @@
 
 mod contour_file;
 mod places;
+mod program_file;
 mod reduction;
 mod schema;
 mod splines;
@@ -10,6 +11,7 @@ mod trim;
 use crate::contour::{Along, Contour};
 use crate::input::{InputError, Source};
 use crate::offset::Offset;
+use crate::program;
 
 pub use crate::units::Units;
 use places::{Place, Places};
@@ -88,7 +90,8 @@ pub struct Job {
 }
 
 impl Job {
-    /// Reads a job by its file's ending. Errors name file, line and column.
+    /// Reads a job by its file's ending: a contour, or a program that cuts one contour, whose lines become curves within 10 um, or within
+    /// what its G64 P says. Errors name file, line and column.
     pub fn read(name: &str) -> Result<Self, InputError> {
         contour_file::job(open(name)?)
     }
@@ -199,9 +202,11 @@ fn open(name: &str) -> Result<Source, InputError> {
     let ending = name.rsplit_once('.').map_or("", |(_, ending)| ending).to_ascii_lowercase();
     match ending.as_str() {
         "toml" => Source::read(name),
+        _ if program::is_one(name) => program_file::source(name),
         _ => Err(InputError::new(
             name,
-            "is not a job that can be read here; give a contour in TOML (.toml), as examples/farouki2018.toml",
+            "is not a job that can be read here; give a contour in TOML (.toml), as examples/farouki2018.toml, or a program (.ngc .nc \
+             .gcode .tap .mpf .spf .apt .cls)",
         )),
     }
 }

@@ -28,7 +28,49 @@ pub mod rs274;
 pub mod sinumerik;
 pub mod write;
 
+use std::io::BufRead;
+
+use crate::input::InputError;
+use crate::units::Units;
+
 pub use item::{Action, Arc, Feed, Item, Motion, Plane};
+
+/// The languages by the endings of files.
+fn language(name: &str) -> Option<Language> {
+    let (_, ending) = name.rsplit_once('.')?;
+    match ending.to_ascii_lowercase().as_str() {
+        "nc" | "ngc" | "gcode" | "tap" => Some(Language::Rs274),
+        "mpf" | "spf" => Some(Language::Sinumerik),
+        "apt" | "cls" => Some(Language::Apt),
+        _ => None,
+    }
+}
+
+#[derive(Clone, Copy)]
+enum Language {
+    Rs274,
+    Sinumerik,
+    Apt,
+}
+
+/// Whether a file's ending is that of a program: .nc .ngc .gcode .tap, .mpf .spf, .apt .cls.
+pub fn is_one(name: &str) -> bool {
+    language(name).is_some()
+}
+
+/// Reads a program by its file's ending, with the settings that its language begins with. Errors are those of its reader, or that the ending is
+/// none of a program.
+pub fn read(name: &str, input: impl BufRead, sink: Sink<'_>) -> Result<usize, InputError> {
+    match language(name) {
+        Some(Language::Rs274) => rs274::read(name, input, &rs274::Settings::default(), sink),
+        Some(Language::Sinumerik) => sinumerik::read(name, input, &sinumerik::Settings::default(), sink),
+        Some(Language::Apt) => apt::read(name, input, Units::Mm, sink),
+        None => {
+            let message = "has no ending of a program; .nc .ngc .gcode .tap .mpf .spf .apt .cls are";
+            Err(InputError::new(name, message))
+        }
+    }
+}
 
 /// What takes the items of a program, in order. An error that it returns ends the reading and is put at the item's place.
 pub type Sink<'a> = &'a mut dyn FnMut(&Item<'_>) -> Result<(), String>;
