@@ -109,15 +109,16 @@ mod tests {
         }
     }
 
-    /// A quarter of a circle by the usual cubic: its curvature is within 1 % of 1/r.
+    /// A quarter of a circle of 2 mm by a cubic with handles of k r: its curvature at both ends is 2 (1 - k)/(3 k^2 r), towards the centre.
     #[test]
-    fn the_curvature_of_a_circle() {
+    fn the_curvature_of_a_quarter_circle() {
         let k = 0.552_284_75;
         let [a, b, c, d] = [[1.0, 0.0], [1.0, k], [k, 1.0], [0.0, 1.0]].map(|[x, y]| Vector([2.0 * x, 2.0 * y, 0.0]));
-        for t in [0.0, 0.25, 0.5, 0.9] {
+        let exact = 2.0 * (1.0 - k) / (3.0 * k * k * 2.0);
+        for t in [0.0, 1.0] {
             let at = Cubic { points: [a, b, c, d] }.at(t);
             let towards_centre = at.curvature().dot(-at.point) / at.point.norm();
-            assert!((towards_centre - 0.5).abs() < 5e-3, "{towards_centre}");
+            assert!((towards_centre - exact).abs() < 1e-12, "{towards_centre} {exact}");
         }
     }
 }
