@@ -88,11 +88,12 @@ fn bad_input_is_a_sentence() {
     let two = file("fit-two.ngc", "G21 F100\nG1 X10\nG0 X20\nG1 Y10\n");
     let part = file("fit-part.xyz", "G1 X1\n");
     let rise = file("fit-rise.ngc", "G21 F100\nG2 X2 Y0 I1 Z5\n");
+    let beside = file("fit-beside.ngc", "G21 F100\nG41.1 D6\nG1 X10\nG1 Y10\n");
     let toml = nowhere("fit-bad.toml");
     let toml = toml.to_str().unwrap();
     let mpf = nowhere("fit-bad.mpf");
     let mpf = mpf.to_str().unwrap();
-    let cases: [(&str, &std::path::Path, &[&str], &[&str]); 8] = [
+    let cases: [(&str, &std::path::Path, &[&str], &[&str]); 10] = [
         ("tolerance", &heart, &["--tolerance", "0", "-o", toml], &["--tolerance", "above zero"]),
         ("negative", &heart, &["--tolerance", "-0.1", "-o", toml], &["-0.1", "above zero"]),
         ("ending", &part, &["--tolerance", "0.01", "-o", toml], &["fit-part.xyz", "xyz", ".ngc"]),
@@ -100,6 +101,8 @@ fn bad_input_is_a_sentence() {
         ("words", &heart, &["--tolerance", "0.01", "--curve", "ph", "-o", mpf], &["PH", ".toml", "bspline"]),
         ("block", &broken, &["--tolerance", "0.01", "--curve", "bspline", "-o", mpf], &["fit-broken.ngc:4:"]),
         ("contours", &two, &["--tolerance", "0.01", "-o", toml], &["2 contours", "--contour 0 to 1"]),
+        ("compensated", &beside, &["--tolerance", "0.01", "-o", toml], &["fit-beside.ngc:2:", "compensation"]),
+        ("compensated program", &beside, &["--tolerance", "0.01", "--curve", "bezier", "-o", mpf], &["compensation"]),
         ("height", &rise, &["--tolerance", "0.01", "-o", toml], &["fit-rise.ngc:2:", "height"]),
     ];
     for (name, input, options, words) in cases {

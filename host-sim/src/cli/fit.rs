@@ -4,11 +4,11 @@ use std::fs::{self, File};
 use std::io::{BufReader, Write};
 
 use clap::{Args, ValueEnum};
-use host_sim::fit::contour::{Chains, only};
+use host_sim::fit::contour::{COMPENSATION, Chains, only};
 use host_sim::fit::program::{Fitter, Step, Summary};
 use host_sim::fit::{Curve, Fit, Kind};
 use host_sim::input::InputError;
-use host_sim::program::item::Nurbs;
+use host_sim::program::item::{Compensation, Nurbs};
 use host_sim::program::write::{Dialect, Settings, WriteError, Writer};
 use host_sim::program::{self, Action, Feed, Motion};
 use host_sim::units::Units;
@@ -169,6 +169,7 @@ impl Target {
                         writer.motion(item.from, item.feed, &motion).map_err(|error| error.to_string())
                     }
                     Action::End => Ok(()),
+                    Action::Compensation(Compensation::On { .. }) => Err(COMPENSATION.to_string()),
                     _ => {
                         *left += 1;
                         Ok(())

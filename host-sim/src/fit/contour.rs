@@ -8,6 +8,7 @@ use std::fmt::Write as _;
 use super::Curve;
 use super::program::Step;
 use super::vector::Vector;
+use crate::program::item::Compensation;
 use crate::program::{Action, Arc, Feed, Motion, Plane};
 
 /// One contour.
@@ -31,6 +32,8 @@ pub enum Unfit {
     Curve,
     /// A curve that is not at one height.
     Height,
+    /// The contour is given for a tool's edge, and nothing offsets it here.
+    Compensation,
 }
 
 impl std::fmt::Display for Unfit {
@@ -38,10 +41,15 @@ impl std::fmt::Display for Unfit {
         f.write_str(match self {
             Self::NoFeed => "a contour needs a feed per minute; give F before the first cut",
             Self::Curve => "the contour form takes lines and arcs of a program; write to .mpf instead",
+            Self::Compensation => COMPENSATION,
             Self::Height => "a curve changes its height, and a contour has none; write to .mpf instead",
         })
     }
 }
+
+/// What is said of a program whose path is not that of the tool's centre.
+pub const COMPENSATION: &str = "cutter compensation is not applied to programs yet; give the path of the tool's centre, or the contour with \
+                                [offset] in TOML";
 
 /// Heights, and ends, that are the same, in mm.
 const SAME: f64 = 1e-9;
@@ -66,6 +74,7 @@ impl Chains {
                     self.is_open = false;
                     Ok(())
                 }
+                Action::Compensation(Compensation::On { .. }) => Err(Unfit::Compensation),
                 _ => Ok(()),
             },
         }
