@@ -3,7 +3,9 @@
 //! A contour is one chain of cuts at one height, so a program may hold several: they end where the tool moves in z, in rapid, or at another
 //! feed.
 
-use std::fmt::Write as _;
+use std::fmt::{self, Write as _};
+
+use shared::complex::Complex;
 
 use super::Curve;
 use super::program::Step;
@@ -20,7 +22,16 @@ pub struct Chain {
     pub start: Vector,
     /// Where it ends.
     pub end: Vector,
-    segments: Vec<String>,
+    segments: Vec<Segment>,
+}
+
+/// One segment of the contour form, behind where the last one ended.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Segment {
+    Line { to: Vector },
+    Arc { to: Vector, centre: [f64; 2], ccw: bool },
+    Bezier { points: [Vector; 3] },
+    Ph { w: [Complex<f64>; 3] },
 }
 
 /// Why steps make no contour.
@@ -36,8 +47,8 @@ pub enum Unfit {
     Compensation,
 }
 
-impl std::fmt::Display for Unfit {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+impl fmt::Display for Unfit {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::NoFeed => "a contour needs a feed per minute; give F before the first cut",
             Self::Curve => "the contour form takes lines and arcs of a program; write to .mpf instead",
@@ -81,28 +92,25 @@ impl Chains {
     }
 
     fn curve(&mut self, curve: &Curve, feed: Feed) -> Result<(), Unfit> {
-        let (points, text) = match curve {
+        let (points, segment) = match curve {
             Curve::Line(line) => {
                 let [start, end] = line.points;
                 if (start.0[2] - end.0[2]).abs() > SAME {
                     self.is_open = false;
                     return Ok(());
                 }
-                (line.points.to_vec(), format!("line = {{ to = {} }}", flat(end)))
+                (line.points.to_vec(), Segment::Line { to: end })
             }
             Curve::Cubic(cubic) => {
-                let [_, a, b, c] = cubic.points;
-                (cubic.points.to_vec(), format!("bezier = {{ points = [{}, {}, {}] }}", flat(a), flat(b), flat(c)))
+                let [_, points @ ..] = cubic.points;
+                (cubic.points.to_vec(), Segment::Bezier { points })
             }
-            Curve::Ph(ph) => {
-                let [a, b, c] = ph.plane.w.map(|w| format!("[{:?}, {:?}]", w.re, w.im));
-                (ph.bezier().points.to_vec(), format!("ph = {{ w = [{a}, {b}, {c}] }}"))
-            }
+            Curve::Ph(ph) => (ph.bezier().points.to_vec(), Segment::Ph { w: ph.plane.w }),
         };
         if points.iter().any(|point| (point.0[2] - points[0].0[2]).abs() > SAME) {
             return Err(Unfit::Height);
         }
-        self.push([points[0], points[points.len() - 1]], text, feed)
+        self.push([points[0], points[points.len() - 1]], segment, feed)
     }
 
     fn arc(&mut self, arc: &Arc, from: Vector, feed: Feed) -> Result<(), Unfit> {
@@ -110,27 +118,49 @@ impl Chains {
         if arc.plane != Plane::Xy || (to.0[2] - from.0[2]).abs() > SAME || arc.turns > 0 {
             return Err(Unfit::Height);
         }
-        let [x, y] = arc.centre;
-        let text = format!("arc = {{ to = {}, centre = [{x:?}, {y:?}], ccw = {} }}", flat(to), arc.sweep > 0.0);
-        self.push([from, to], text, feed)
+        self.push([from, to], Segment::Arc { to, centre: arc.centre, ccw: arc.sweep > 0.0 }, feed)
     }
 
-    fn push(&mut self, [start, end]: [Vector; 2], text: String, feed: Feed) -> Result<(), Unfit> {
+    fn push(&mut self, [start, end]: [Vector; 2], segment: Segment, feed: Feed) -> Result<(), Unfit> {
         let Feed::Rate(feed) = feed else { return Err(Unfit::NoFeed) };
         match self.chains.last_mut().filter(|chain| self.is_open && chain.feed == feed) {
             Some(chain) => {
                 chain.end = end;
-                chain.segments.push(text);
+                chain.segments.push(segment);
             }
-            None => self.chains.push(Chain { feed, start, end, segments: vec![text] }),
+            None => self.chains.push(Chain { feed, start, end, segments: vec![segment] }),
         }
         self.is_open = true;
         Ok(())
     }
 }
 
-fn flat(point: Vector) -> String {
-    format!("[{:?}, {:?}]", point.0[0], point.0[1])
+impl fmt::Display for Segment {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let flat = |point: Vector| format!("[{:?}, {:?}]", point.0[0], point.0[1]);
+        match *self {
+            Self::Line { to } => write!(f, "to = {}", flat(to)),
+            Self::Arc { to, centre: [x, y], ccw } => {
+                write!(f, "to = {}, centre = [{x:?}, {y:?}], ccw = {ccw}", flat(to))
+            }
+            Self::Bezier { points } => write!(f, "points = [{}]", points.map(flat).join(", ")),
+            Self::Ph { w } => {
+                write!(f, "w = [{}]", w.map(|w| format!("[{:?}, {:?}]", w.re, w.im)).join(", "))
+            }
+        }
+    }
+}
+
+impl Segment {
+    /// Its key in the contour form.
+    fn key(&self) -> &'static str {
+        match self {
+            Self::Line { .. } => "line",
+            Self::Arc { .. } => "arc",
+            Self::Bezier { .. } => "bezier",
+            Self::Ph { .. } => "ph",
+        }
+    }
 }
 
 /// The contour of that number, or the only one. The error is a sentence.
@@ -158,10 +188,11 @@ impl Chain {
     pub fn to_toml(&self) -> String {
         let closed = (self.end - self.start).norm() < SAME;
         let mut text = format!("units = \"mm\"\nclosed = {closed}\n\n[feed]\nrate = {:?}\n", self.feed * 60.0);
+        let [x, y, _] = self.start.0;
         for (number, segment) in self.segments.iter().enumerate() {
-            let start = if number == 0 { format!("start = {}, ", flat(self.start)) } else { String::new() };
+            let start = if number == 0 { format!("start = [{x:?}, {y:?}], ") } else { String::new() };
             // Writing to a string does not fail.
-            let _ = write!(text, "\n[[segment]]\n{}\n", segment.replacen("{ ", &format!("{{ {start}"), 1));
+            let _ = write!(text, "\n[[segment]]\n{} = {{ {start}{segment} }}\n", segment.key());
         }
         text
     }

@@ -5,7 +5,7 @@ use std::io::BufReader;
 
 use crate::fit::Kind;
 use crate::fit::contour::{Chains, only};
-use crate::fit::program::Fitter;
+use crate::fit::program::{Fitter, Step};
 use crate::input::{InputError, Source};
 use crate::program;
 
@@ -16,7 +16,7 @@ pub const TOLERANCE_MM: f64 = 0.01;
 pub(super) fn source(name: &str) -> Result<Source, InputError> {
     let file = File::open(name).map_err(|error| InputError::new(name, format_args!("cannot be read: {error}")))?;
     let mut chains = Chains::default();
-    let mut take = |step: crate::fit::program::Step<'_>| chains.take(&step).map_err(|error| error.to_string());
+    let mut take = |step: Step<'_>| chains.take(&step).map_err(|error| error.to_string());
     let mut fitter = Fitter::new(Kind::Ph, TOLERANCE_MM, &mut take).with_the_programs_tolerance();
     program::read(name, BufReader::new(file), &mut |item| fitter.take(item))?;
     fitter.finish().map_err(|message| InputError::new(name, message))?;
