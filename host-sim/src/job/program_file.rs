@@ -21,6 +21,6 @@ pub(super) fn source(name: &str) -> Result<Source, InputError> {
     program::read(name, BufReader::new(file), &mut |item| fitter.take(item))?;
     fitter.finish().map_err(|message| InputError::new(name, message))?;
     let text = only(&chains.chains, None).map_err(|message| InputError::new(name, message))?.to_toml();
-    // Lines and columns of errors are those of the contour.
-    Ok(Source { name: format!("{name}, as `hodograph fit` has it in a .toml"), text })
+    // Lines and columns of errors are those of the contour, as `hodograph fit -o` writes it.
+    Ok(Source { name: format!("{name} (as a contour)"), text })
 }
