@@ -37,7 +37,7 @@ fn router() -> Limits {
 }
 
 fn without_jerk(limits: Limits) -> Limits {
-    Limits { jerk: [f64::INFINITY; 2], ..limits }
+    Limits { jerk: [f64::INFINITY; 3], ..limits }
 }
 
 fn path(name: &str, text: &str) -> Path {
@@ -96,7 +96,7 @@ fn chains() {
 
 /// How long a planned piece takes, in s.
 fn duration(piece: &PathPiece) -> f64 {
-    piece.segment_length() / (piece.feed * 0.25 * piece.profile.unwrap().factors.iter().sum::<f64>())
+    piece.way() / (piece.feed * 0.25 * piece.profile.unwrap().factors.iter().sum::<f64>())
 }
 
 fn benchmark(criterion: &mut Criterion) {

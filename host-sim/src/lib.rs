@@ -5,6 +5,7 @@
 //! | module | what |
 //! | --- | --- |
 //! | [`units`] | millimetres and inches, at the border |
+//! | [`vector`] | points and directions in space |
 //! | [`input`] | files as they are read, and errors that name file, line and column |
 //! | [`program`] | programs, one motion after another: RS-274, cutter-location files, Sinumerik, drawings; and written |
 //! | [`contour`] | the part's curve: segments and nodes |
@@ -56,3 +57,4 @@ pub mod stream;
 pub mod transport;
 pub mod trimming;
 pub mod units;
+pub mod vector;

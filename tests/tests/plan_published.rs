@@ -33,10 +33,10 @@ fn plans_beat_the_published_runs() {
             let run = simulate(&path, Units::Mm, SETTLING_TICKS, |setpoint| mill.advance(setpoint), |_| ()).unwrap();
             let acceleration = run.max_acceleration / f64::sqrt(2.0);
             let limits = Limits {
-                velocity: [f64::INFINITY; 2],
-                acceleration: [acceleration; 2],
-                jerk: [acceleration / RISE; 2],
-                corner_step: [f64::INFINITY; 2],
+                velocity: [f64::INFINITY; 3],
+                acceleration: [acceleration; 3],
+                jerk: [acceleration / RISE; 3],
+                corner_step: [f64::INFINITY; 3],
                 feed: f64::INFINITY,
                 centripetal: f64::INFINITY,
             };

@@ -49,7 +49,7 @@ fn path(seed: u64, random: &mut Random) -> Option<(Path, Job)> {
     (job.contour, job.offset) = (contour, distance);
     let path = Path::new(&job.clone().with_loop(Some(0)), Order::First).ok()?;
     let is_point = |length: f64, way: f64| length < POINT && way > AROUND * length;
-    let has_points = path.pieces.iter().any(|piece| is_point(piece.segment_length(), piece.centre_length()));
+    let has_points = path.pieces.iter().any(|piece| is_point(piece.way(), piece.centre_length()));
     // A tool as large as a house makes no test of a router.
     (!has_points && path.centre_length() < 3_000.0).then_some((path, job))
 }
@@ -75,7 +75,7 @@ fn all_within(first: u64) {
         let mut machine = machine(&mut random, router.clone());
         let mut limits = Limits::of(&machine, &Default::default()).unwrap();
         if random.chance(0.3) {
-            limits.jerk = [f64::INFINITY; 2];
+            limits.jerk = [f64::INFINITY; 3];
             machine.axes.iter_mut().for_each(|axis| axis.jerk = 1e9);
         }
         let (path, plan) = planned(&path, &limits, &Manner::USUAL).unwrap();

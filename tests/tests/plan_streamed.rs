@@ -35,7 +35,7 @@ fn lines(count: usize) -> impl Iterator<Item = PathPiece> {
 }
 
 fn duration(piece: &PathPiece) -> f64 {
-    piece.segment_length() / (piece.feed * 0.25 * piece.profile.unwrap().factors.iter().sum::<f64>())
+    piece.way() / (piece.feed * 0.25 * piece.profile.unwrap().factors.iter().sum::<f64>())
 }
 
 /// The same pieces at the same feeds, but for what the smoothing takes from farther away than it is asked to look.
@@ -57,9 +57,9 @@ fn a_stream_is_planned_as_the_whole() {
         most = most.max((after - before).abs());
     }
     for part in &parts {
-        length += part.segment_length();
+        length += part.way();
     }
-    let expected: f64 = pieces.iter().map(PathPiece::segment_length).sum();
+    let expected: f64 = pieces.iter().map(PathPiece::way).sum();
     assert!(most < 1e-6 && (length / expected - 1.0).abs() < 1e-12, "{most} {length} {expected}");
 }
 

@@ -67,7 +67,7 @@ fn ratio(name: &str, text: &str, limits: &Limits) -> f64 {
 /// geometric mean of the examples.
 #[test]
 fn the_examples_are_near_their_bound() {
-    let free = Limits { jerk: [f64::INFINITY; 2], ..limits() };
+    let free = Limits { jerk: [f64::INFINITY; 3], ..limits() };
     let (mut product, mut text) = (1.0, String::new());
     for (name, job) in EXAMPLES {
         let [without, with] = [ratio(name, job, &free), ratio(name, job, &limits())];
@@ -124,7 +124,7 @@ fn a_spline_is_toppras() {
         return;
     };
     let theirs: f64 = String::from_utf8(found.stdout).unwrap().trim().parse().unwrap();
-    let free = Limits { jerk: [f64::INFINITY; 2], ..limits() };
+    let free = Limits { jerk: [f64::INFINITY; 3], ..limits() };
     let ours = plan(&path("fan", EXAMPLES[1].1).1.pieces, 0.0, &free, &Manner::USUAL).unwrap().time;
     println!("fan: {ours:.4} s, toppra {theirs:.4} s");
     assert!(ours < 1.01 * theirs && ours > theirs * (1.0 - 1e-3), "{ours} {theirs}");

@@ -69,7 +69,7 @@ impl Planning {
         let mm = job.units.mm();
         let limits = Limits::of(machine, settings)
             .ok_or_else(|| InputError::new(name, "the machine has no two axes; a path in the plane needs x and y"))?;
-        let limits = if self.no_jerk { Limits { jerk: [f64::INFINITY; 2], ..limits } } else { limits };
+        let limits = if self.no_jerk { Limits { jerk: [f64::INFINITY; 3], ..limits } } else { limits };
         let end = |option: &str, feed: Option<f64>| match feed {
             Some(feed) if !(feed >= 0.0 && feed.is_finite()) => {
                 Err(InputError::new(option, format_args!("the feed is {feed}; it must be a number, zero or above")))

@@ -29,9 +29,10 @@ mod piecewise;
 mod polyline;
 pub mod program;
 mod tangent;
-pub mod vector;
 
 use std::ops::Range;
+
+pub use crate::vector;
 
 use bspline::Bspline;
 use corners::Vertex;

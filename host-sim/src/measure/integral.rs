@@ -1,6 +1,5 @@
 //! The time of a path by direct quadrature of equation (21), written from the paper's formulas.
 
-use shared::curve::Curve as _;
 use shared::feed::Ramp;
 
 use crate::path::{Path, PathPiece};
@@ -26,17 +25,17 @@ pub struct Slowness<'a> {
 impl<'a> Slowness<'a> {
     /// On `piece`, at the weight w of its path.
     pub fn new(piece: &'a PathPiece, weight: f64) -> Self {
-        let start = piece.segment.length_to(piece.interval[0]);
-        Self { piece, weight, start, length: piece.segment_length() }
+        let start = piece.way_to(piece.interval[0]);
+        Self { piece, weight, start, length: piece.way() }
     }
 
     /// The inverse of the rate at a parameter of the segment, in s.
     pub fn at(&self, xi: f64) -> f64 {
         let Self { piece, weight, start, length } = *self;
-        let u = (piece.segment.length_to(xi) - start) / length;
+        let u = (piece.way_to(xi) - start) / length;
         let stretch = piece.stretch(xi);
         // Equation (20); on a fill arc V is the centre feed, and the arc is its own centre path.
-        let sigma_w = stretch / ((1.0 - weight) * stretch + weight) * piece.segment.speed(xi);
+        let sigma_w = stretch / ((1.0 - weight) * stretch + weight) * piece.way_speed(xi);
         sigma_w / (reduction(u, piece.start) * reduction(1.0 - u, piece.end) * piece.feed)
     }
 }
@@ -44,7 +43,7 @@ impl<'a> Slowness<'a> {
 fn piece_time(piece: &PathPiece, weight: f64) -> f64 {
     if let Some(profile) = piece.profile {
         // The mean of a cubic is that of its Bernstein coefficients.
-        return piece.segment_length() / (piece.feed * 0.25 * profile.factors.iter().sum::<f64>());
+        return piece.way() / (piece.feed * 0.25 * profile.factors.iter().sum::<f64>());
     }
     let [from, to] = piece.interval;
     let slowness = Slowness::new(piece, weight);

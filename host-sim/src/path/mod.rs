@@ -4,10 +4,10 @@
 
 mod drivable;
 mod even;
+mod height;
 mod piece;
 mod route;
 
-use shared::complex::Complex;
 use shared::error::PathError;
 use shared::extent::SoftLimits;
 use shared::fixed::{Fixed, Position, round_point};
@@ -19,6 +19,7 @@ use crate::input::InputError;
 use crate::job::Job;
 use crate::pacing;
 
+pub use height::{Height, Space};
 pub use piece::PathPiece;
 use route::Route;
 pub use route::Trimmed;
@@ -83,18 +84,14 @@ impl Path {
         self.pieces.iter().any(|piece| piece.profile.is_some())
     }
 
-    /// The exact last point.
+    /// The exact last point; z is 0 where the path does not speak of it.
     pub fn end(&self) -> Position {
-        let point = self.pieces.last().map_or(Complex::ZERO, |piece| piece.point(piece.interval[1]));
-        let [x, y] = round_point(point);
-        [x, y, Fixed(0)]
+        self.pieces.last().map_or([Fixed(0); 3], |piece| rounded(piece, piece.interval[1]))
     }
 
     /// The exact first point.
     pub fn start(&self) -> Position {
-        let point = self.pieces.first().map_or(Complex::ZERO, |piece| piece.point(piece.interval[0]));
-        let [x, y] = round_point(point);
-        [x, y, Fixed(0)]
+        self.pieces.first().map_or([Fixed(0); 3], |piece| rounded(piece, piece.interval[0]))
     }
 
     /// The pieces as the controller gets them.
@@ -121,4 +118,10 @@ impl Path {
     pub fn centre_length(&self) -> f64 {
         self.pieces.iter().map(PathPiece::centre_length).sum()
     }
+}
+
+/// The centre at a parameter of a piece.
+fn rounded(piece: &PathPiece, xi: f64) -> Position {
+    let [x, y] = round_point(piece.point(xi));
+    [x, y, Fixed::from_mm(piece.z(xi).unwrap_or(0.0))]
 }

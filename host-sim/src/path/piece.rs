@@ -1,12 +1,13 @@
 //! One piece of the exact path, and the same piece as the controller gets it.
 
 use shared::complex::Complex;
-use shared::curve::{Curve as _, Segment};
+use shared::curve::{Curve as _, Cut, Segment};
 use shared::feed::Ramp;
 use shared::fixed::{Position, round_point};
 use shared::piece::{Piece, Shape, SplineShape};
 use shared::profile::Profile;
 
+use super::Height;
 use crate::contour::{Along, Contour};
 
 /// One piece of the exact path.
@@ -20,6 +21,10 @@ pub struct PathPiece {
     pub interval: [f64; 2],
     /// The offset distance; 0 on a fill arc, which is its own centre path.
     pub offset: f64,
+    /// Whether it is as fast as the machine can: a plan takes the machine's limits in the place of its feed.
+    pub is_rapid: bool,
+    /// How z goes along the segment; none where the path does not speak of it.
+    pub height: Option<Height>,
     /// V in mm/s.
     pub feed: f64,
     /// The same as the job has it, whatever a plan makes of it.
@@ -45,6 +50,8 @@ impl PathPiece {
             segment,
             interval,
             offset,
+            is_rapid: false,
+            height: None,
             feed,
             wish: feed,
             start_corner: None,
@@ -99,18 +106,24 @@ impl PathPiece {
 
     /// The length on C; none on a fill arc.
     pub fn contact_length(&self) -> f64 {
-        if self.is_fill() { 0.0 } else { self.segment_length() }
+        if self.is_fill() { 0.0 } else { self.way() }
     }
 
-    /// The length of the segment's part.
-    pub fn segment_length(&self) -> f64 {
+    /// The length that the feed is along ([`super::Space`]): that of the segment's part, but where z bends or moves alone.
+    pub fn way(&self) -> f64 {
         let [from, to] = self.interval;
-        self.segment.length_to(to) - self.segment.length_to(from)
+        self.way_to(to) - self.way_to(from)
     }
 
-    /// The length of the centre's way: |length + d times the turn of the tangent|, from integrating equation (13).
+    /// The length of the centre's way: |length + d times the turn of the tangent|, from integrating equation (13), and z.
     pub fn centre_length(&self) -> f64 {
-        (self.segment_length() + self.offset * self.turn()).abs()
+        let plane = || (self.way() + self.offset * self.turn()).abs();
+        match self.height {
+            // Exact but for an offset PH curve, where it is that of an even rise.
+            Some(Height::Linear { slope, .. }) => plane().hypot(slope * self.way()),
+            Some(Height::Vertical(_) | Height::Bezier(_)) => self.way(),
+            None => plane(),
+        }
     }
 
     /// The turn of the tangent along the piece, in radians.
@@ -152,7 +165,7 @@ impl PathPiece {
             start: exact.start.map(ramp),
             end: exact.end.map(ramp),
             profile: exact.profile.map(|Profile { factors }| Profile { factors: factors.map(real) }),
-            further: None,
+            further: exact.further,
             last,
         }
     }
@@ -160,16 +173,19 @@ impl PathPiece {
     /// The same piece for the f64 twin of the tick; only its origin is rounded.
     pub fn exact(&self, last: Option<Position>) -> Piece<f64> {
         let [from, to] = self.interval;
-        let cut = self.segment.cut(from, to, self.offset);
+        let Cut { origin, mut shape } = self.segment.cut(from, to, self.offset);
+        if let Shape::Spline(spline) = &mut shape {
+            spline.bow = self.bow();
+        }
         Piece {
-            origin: round_point(cut.origin),
-            shape: cut.shape,
+            origin: round_point(origin),
+            shape,
             interval: self.interval,
             feed: self.feed,
             start: self.start,
             end: self.end,
             profile: self.profile,
-            further: None,
+            further: self.travel(),
             last,
         }
     }

@@ -5,10 +5,9 @@
 //! be run; the pass from the start takes as much of it as there is. No jerk is limited, so that no plan within the same limits is
 //! faster but for the grid: velocities hold at its places and accelerations in the middle between them (test `the_grid_converges`).
 
-use shared::complex::Complex;
-
 use super::course::{Course, Place};
-use super::limits::Limits;
+use super::limits::{AXES, Limits};
+use crate::vector::Vector;
 
 /// The fastest motion that velocities and accelerations leave.
 #[derive(Clone, Debug, PartialEq)]
@@ -29,8 +28,8 @@ struct Line {
 /// Lines between which u must stay.
 #[derive(Clone, Copy)]
 struct Lines {
-    upper: [Line; 2],
-    lower: [Line; 2],
+    upper: [Line; AXES],
+    lower: [Line; AXES],
 }
 
 /// What one place allows: u at it, u over the step behind it, and x up to a number.
@@ -44,11 +43,11 @@ pub(super) struct Allowed {
 const STILL: f64 = 1e-12;
 
 impl Lines {
-    /// From |c u + n x| <= A of both axes.
-    fn new(c: [f64; 2], n: [f64; 2], limits: &Limits) -> Self {
+    /// From |c u + n x| <= A of all axes.
+    fn new(Vector(c): Vector, Vector(n): Vector, limits: &Limits) -> Self {
         let free = |offset: f64| Line { offset, slope: 0.0 };
-        let (mut upper, mut lower) = ([free(f64::INFINITY); 2], [free(f64::NEG_INFINITY); 2]);
-        for axis in 0..2 {
+        let (mut upper, mut lower) = ([free(f64::INFINITY); AXES], [free(f64::NEG_INFINITY); AXES]);
+        for axis in 0..AXES {
             let (c, n, a) = (c[axis].abs(), n[axis] * c[axis].signum(), limits.acceleration[axis]);
             if c >= STILL {
                 upper[axis] = Line { offset: a / c, slope: -n / c };
@@ -71,20 +70,18 @@ impl Allowed {
     /// At a place in front of another one. In the middle of the step between them x is greater by u times the step: |t u + (x + u step) n|
     /// is asked there, so that the error is of second order.
     pub(super) fn at(place: &Place, next: Option<&Place>, limits: &Limits) -> Self {
-        let bend = |place: &Place| place.direction.left() * place.curvature;
-        let parts = |z: Complex<f64>| [z.re, z.im];
-        let (along, across) = (parts(place.direction), parts(bend(place)));
+        let (along, across) = (place.direction, place.bend);
         let here = Lines::new(along, across, limits);
         let ahead = next.filter(|next| next.step > 0.0).map_or(here, |next| {
             let direction = (place.direction + next.direction) * 0.5;
-            let across = (bend(place) + bend(next)) * 0.5;
-            Lines::new(parts(direction + across * next.step), parts(across), limits)
+            let across = (place.bend + next.bend) * 0.5;
+            Lines::new(direction + across * next.step, across, limits)
         });
-        let mut most = (place.feed * place.feed).min(limits.centripetal / place.curvature.abs());
-        for axis in 0..2 {
-            let t = along[axis].abs();
+        let mut most = (place.feed * place.feed).min(limits.centripetal / place.curvature());
+        for axis in 0..AXES {
+            let t = along.0[axis].abs();
             most = if t < STILL {
-                most.min(limits.acceleration[axis] / across[axis].abs())
+                most.min(limits.acceleration[axis] / across.0[axis].abs())
             } else {
                 most.min((limits.velocity[axis] / t).powi(2))
             };
@@ -109,10 +106,10 @@ impl Allowed {
             return self.within(self.most.min(next), &self.here.upper, &self.here.lower);
         }
         let twice = 2.0 * step;
-        let [a, b] = self.ahead.upper;
-        let [c, d] = self.ahead.lower;
-        let upper = [a, b, Line { offset: next / twice, slope: -1.0 / twice }];
-        let lower = [c, d, Line { offset: 0.0, slope: -1.0 / twice }];
+        let [a, b, c] = self.ahead.upper;
+        let upper = [a, b, c, Line { offset: next / twice, slope: -1.0 / twice }];
+        let [a, b, c] = self.ahead.lower;
+        let lower = [a, b, c, Line { offset: 0.0, slope: -1.0 / twice }];
         self.within(self.most, &upper, &lower)
     }
 
@@ -140,7 +137,7 @@ impl Allowed {
 fn corner(before: &Place, after: &Place, limits: &Limits) -> f64 {
     let turn = after.direction - before.direction;
     let of_axis = |step: f64, turn: f64| if turn.abs() < STILL { f64::INFINITY } else { (step / turn.abs()).powi(2) };
-    of_axis(limits.corner_step[0], turn.re).min(of_axis(limits.corner_step[1], turn.im))
+    limits.corner_step.into_iter().zip(turn.0).map(|(step, turn)| of_axis(step, turn)).fold(f64::INFINITY, f64::min)
 }
 
 /// The least time of a course within limits.
@@ -198,10 +195,10 @@ mod tests {
 
     fn limits(acceleration: f64) -> Limits {
         Limits {
-            velocity: [1e3; 2],
-            acceleration: [acceleration; 2],
-            jerk: [f64::INFINITY; 2],
-            corner_step: [0.0; 2],
+            velocity: [1e3; 3],
+            acceleration: [acceleration; 3],
+            jerk: [f64::INFINITY; 3],
+            corner_step: [0.0; 3],
             feed: f64::INFINITY,
             centripetal: f64::INFINITY,
         }
@@ -221,7 +218,7 @@ mod tests {
         }
         // Along a diagonal the axes bear sqrt(2) times as much together, and the slower axis' velocity limits both.
         let diagonal = path(1e3, true, "[[segment]]\nline = { start = [0.0, 0.0], to = [60.0, 80.0] }\n");
-        let found = bound(&Course::new(&diagonal, 0.01), &Limits { velocity: [90.0, 40.0], ..limits(400.0) });
+        let found = bound(&Course::new(&diagonal, 0.01), &Limits { velocity: [90.0, 40.0, 1e3], ..limits(400.0) });
         assert!((found.speed.iter().copied().fold(0.0, f64::max) - 50.0).abs() < 1e-9);
         assert!((found.time / (100.0 / 50.0 + 50.0 / 500.0) - 1.0).abs() < 1e-4, "{}", found.time);
     }
@@ -246,7 +243,7 @@ mod tests {
         let curve = "[[segment]]\nhermite = { start = [0.0, 0.0], to = [40.0, 10.0], d0 = [80.0, 60.0], d1 = [60.0, -50.0] }\n\
                      [[segment]]\nline = { to = [70.0, 40.0] }\n[[segment]]\narc = { to = [70.0, 80.0], centre = [70.0, 60.0], ccw = true }\n";
         let course = Course::new(&path(300.0, true, curve), 0.01);
-        let limits = Limits { corner_step: [5.0, 8.0], velocity: [120.0, 90.0], ..limits(500.0) };
+        let limits = Limits { corner_step: [5.0, 8.0, 0.0], velocity: [120.0, 90.0, 1e3], ..limits(500.0) };
         let Bound { time, speed } = bound(&course, &limits);
         assert!(time.is_finite());
         let mut corners = 0;
@@ -255,18 +252,17 @@ mod tests {
             if pair[1].is_corner {
                 corners += 1;
                 let step = pair[1].direction * next - pair[0].direction * v;
-                assert!(step.re.abs() <= 5.0 * (1.0 + 1e-9) && step.im.abs() <= 8.0 * (1.0 + 1e-9));
+                assert!(step.0[0].abs() <= 5.0 * (1.0 + 1e-9) && step.0[1].abs() <= 8.0 * (1.0 + 1e-9));
             }
             assert!(
-                v * pair[0].direction.re.abs() <= 120.0 * (1.0 + 1e-9)
-                    && v * pair[0].direction.im.abs() <= 90.0 * (1.0 + 1e-9)
+                v * pair[0].direction.0[0].abs() <= 120.0 * (1.0 + 1e-9)
+                    && v * pair[0].direction.0[1].abs() <= 90.0 * (1.0 + 1e-9)
             );
             if pair[1].step > 0.0 {
                 let u = (next * next - v * v) / (2.0 * pair[1].step);
-                let bend = |place: &Place| place.direction.left() * place.curvature;
                 let direction = (pair[0].direction + pair[1].direction) * 0.5;
-                let a = direction * u + (bend(&pair[0]) + bend(&pair[1])) * (0.25 * (v * v + next * next));
-                assert!(a.re.abs() <= 500.0 * (1.0 + 1e-6) && a.im.abs() <= 500.0 * (1.0 + 1e-6), "{k}: {a:?}");
+                let a = direction * u + (pair[0].bend + pair[1].bend) * (0.25 * (v * v + next * next));
+                assert!(a.0[0].abs() <= 500.0 * (1.0 + 1e-6) && a.0[1].abs() <= 500.0 * (1.0 + 1e-6), "{k}: {a:?}");
             }
         }
         assert_eq!(corners, 2);

@@ -160,7 +160,7 @@ pub fn within_budget(
     if error <= budget {
         return Ok(Budgeted { path: free, plan, limits: *limits, error });
     }
-    let [ax, ay] = limits.acceleration;
+    let [ax, ay, _] = limits.acceleration;
     let steepest = ax.hypot(ay);
     let response = Response::of(plant, budget, fastest, steepest);
     let gentlest = steepest / (CRAWL * CRAWL);

@@ -5,7 +5,7 @@ use std::fmt;
 use serde::Serialize;
 
 use super::course::{Course, Place};
-use super::limits::{JERK_WINDOW, Limits};
+use super::limits::{AXES, JERK_WINDOW, Limits};
 
 /// What limits the speed at a place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize)]
@@ -29,7 +29,7 @@ pub enum Reason {
 
 impl fmt::Display for Reason {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        const NAMES: [&str; 2] = ["x", "y"];
+        const NAMES: [&str; 3] = ["x", "y", "z"];
         let name = |axis: usize| NAMES.get(axis).copied().unwrap_or("?");
         match *self {
             Self::Feed => f.write_str("the job's feed"),
@@ -90,9 +90,8 @@ pub(super) fn caps(course: &Course, limits: &Limits, bends: Bends, scale: &[f64]
         if after.is_rest {
             cap.lower(0.0, Reason::Rest);
         }
-        let jump = after.direction.left() * (after.curvature - before.curvature);
-        for (axis, jump) in [jump.re.abs(), jump.im.abs()].into_iter().enumerate() {
-            // v^2 |n d(kappa)| within the window, or within the time that the step takes.
+        for (axis, jump) in after.bending(before).0.map(f64::abs).into_iter().enumerate() {
+            // v^2 |d(kappa n)| within the window, or within the time that the step takes.
             let jerk = JERK_OF_BEND * limits.jerk[axis] * scale;
             if jump > 0.0 && jerk.is_finite() && !after.is_corner {
                 let speed = (jerk * JERK_WINDOW / jump).sqrt().max((jerk * after.step / jump).cbrt());
@@ -115,14 +114,13 @@ pub(super) fn caps(course: &Course, limits: &Limits, bends: Bends, scale: &[f64]
 /// What one place bears without its neighbours.
 pub(super) fn alone(place: &Place, limits: &Limits, bends: Bends, scale: f64) -> Cap {
     let mut cap = Cap { speed: place.feed.min(limits.feed), reason: Reason::Feed };
-    let curvature = place.curvature.abs();
+    let curvature = place.curvature();
     cap.lower((limits.centripetal * scale / curvature).sqrt(), Reason::Centripetal);
-    let along = [place.direction.re.abs(), place.direction.im.abs()];
-    for axis in 0..2 {
+    let (along, across) = (place.direction.0.map(f64::abs), place.bend.0.map(f64::abs));
+    for axis in 0..AXES {
         cap.lower(limits.velocity[axis] / along[axis], Reason::Velocity(axis));
         if bends == Bends::Steady {
-            let across = along[1 - axis] * curvature;
-            cap.lower((limits.acceleration[axis] * scale / across).sqrt(), Reason::Acceleration(axis));
+            cap.lower((limits.acceleration[axis] * scale / across[axis]).sqrt(), Reason::Acceleration(axis));
         }
         let turning = curvature * curvature * along[axis];
         cap.lower((JERK_OF_BEND * limits.jerk[axis] * scale / turning).cbrt(), Reason::Jerk(axis));
@@ -136,7 +134,7 @@ fn corner(cap: &mut Cap, before: &Place, after: &Place, limits: &Limits, near: f
     /// A turn that is rounding.
     const NONE: f64 = 1e-9;
     let turn = after.direction - before.direction;
-    for (axis, turn) in [turn.re.abs(), turn.im.abs()].into_iter().enumerate() {
+    for (axis, turn) in turn.0.map(f64::abs).into_iter().enumerate() {
         if turn > NONE {
             let bend = (limits.acceleration[axis] * near / turn).sqrt();
             cap.lower(bend.min(limits.corner_step[axis] / turn), Reason::Corner(axis));

@@ -1,11 +1,11 @@
 //! The way of the tool's centre as a grid of places.
 
-use shared::complex::Complex;
-use shared::curve::{Curve as _, Segment};
+use shared::curve::Segment;
 
 use super::manner::{Manner, Rests};
 use crate::contour::SMOOTH;
-use crate::path::{Path, PathPiece};
+use crate::path::{Height, Path, PathPiece, Space};
+use crate::vector::Vector;
 
 /// One place on the way.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -19,12 +19,12 @@ pub struct Place {
     /// The way from the place before, in mm; 0 at the first place of a piece.
     pub step: f64,
     /// The unit tangent.
-    pub direction: Complex<f64>,
-    /// The curvature of the centre's way in 1/mm, positive to the left.
-    pub curvature: f64,
-    /// |1 + kappa d|: how far the centre moves for a unit of the contact point.
+    pub direction: Vector,
+    /// The curvature of the centre's way as a vector: the derivative of the direction by the way, in 1/mm.
+    pub bend: Vector,
+    /// How far the centre moves for a unit of the length that the feed is along: |1 + kappa d| where z stays ([`crate::path::Space`]).
     pub stretch: f64,
-    /// The derivative of that along the contour, in 1/mm.
+    /// The derivative of that along this length, in 1/mm.
     pub stretching: f64,
     /// The centre's feed at the job's own V, without ramps, in mm/s.
     pub feed: f64,
@@ -32,6 +32,19 @@ pub struct Place {
     pub is_corner: bool,
     /// Whether the motion rests between the place before and this one.
     pub is_rest: bool,
+}
+
+impl Place {
+    /// The curvature in 1/mm, whatever its side.
+    pub fn curvature(&self) -> f64 {
+        self.bend.norm()
+    }
+
+    /// By how much the curvature changes on the way from the place before, beside turning with the way, in 1/mm.
+    pub fn bending(&self, before: &Self) -> Vector {
+        let turning = 0.5 * (self.bend.dot(self.bend) + before.bend.dot(before.bend)) * self.step;
+        self.bend - before.bend + (self.direction + before.direction) * (0.5 * turning)
+    }
 }
 
 /// All places, in order.
@@ -106,7 +119,7 @@ fn places(pieces: &[PathPiece], weight: f64, mut parts: impl FnMut(usize, &PathP
     let mut places: Vec<Place> = Vec::new();
     for (number, piece) in pieces.iter().enumerate() {
         let [from, to] = piece.interval;
-        let lengths = [from, to].map(|xi| piece.segment.length_to(xi));
+        let lengths = [from, to].map(|xi| piece.way_to(xi));
         let mut before = from;
         for (k, part) in parts(number, piece).into_iter().enumerate() {
             let xi = if part == 1.0 { to } else { from + (to - from) * part };
@@ -115,10 +128,8 @@ fn places(pieces: &[PathPiece], weight: f64, mut parts: impl FnMut(usize, &PathP
             let mut place = place(piece, weight, xi);
             (place.piece, place.step) = (number, step);
             place.fraction =
-                if part == 1.0 { 1.0 } else { (piece.segment.length_to(xi) - lengths[0]) / (lengths[1] - lengths[0]) };
-            let turns = |last: &Place| {
-                last.direction.cross(place.direction).abs() > SMOOTH || last.direction.dot(place.direction) < 0.0
-            };
+                if part == 1.0 { 1.0 } else { (piece.way_to(xi) - lengths[0]) / (lengths[1] - lengths[0]) };
+            let turns = |last: &Place| (last.direction - place.direction).norm() > SMOOTH;
             place.is_corner = k == 0 && places.last().is_some_and(turns);
             places.push(place);
         }
@@ -128,39 +139,31 @@ fn places(pieces: &[PathPiece], weight: f64, mut parts: impl FnMut(usize, &PathP
 
 /// The centre's speed |1 + kappa d| sigma, by Simpson's rule.
 fn length(piece: &PathPiece, from: f64, to: f64) -> f64 {
-    if let Segment::Line(line) = piece.segment {
-        return (line.end - line.start).norm() * (to - from);
+    let speed = |xi: f64| piece.space(xi).stretch * piece.way_speed(xi);
+    if let Segment::Line(_) = piece.segment {
+        return speed(from) * (to - from);
     }
-    let speed = |xi: f64| piece.stretch(xi) * piece.segment.speed(xi);
     (speed(from) + 4.0 * speed(0.5 * (from + to)) + speed(to)) * (to - from) / 6.0
 }
 
 fn place(piece: &PathPiece, weight: f64, xi: f64) -> Place {
-    /// Half the difference for the derivative of the stretch, as a part of a segment.
-    const NEAR: f64 = 1e-5;
-    let stretch = piece.stretch(xi);
-    let kappa = piece.segment.curvature(xi);
-    let stretching = match piece.segment {
-        Segment::Line(_) | Segment::Arc(_) => 0.0,
-        Segment::Ph(_) | Segment::Spline(_) if piece.offset == 0.0 => 0.0,
-        Segment::Ph(_) | Segment::Spline(_) => {
-            let (low, high) = ((xi - NEAR).max(0.0), (xi + NEAR).min(1.0));
-            (piece.stretch(high) - piece.stretch(low)) / ((high - low) * piece.segment.speed(xi))
-        }
+    let Space { direction, bend, stretch, stretching } = piece.space(xi);
+    // What a rise alone makes of the way.
+    let rise = match piece.height {
+        Some(Height::Linear { slope, .. }) => slope.hypot(1.0),
+        _ => 1.0,
     };
-    // The tangents of curve and offset turn alike, over lengths in the ratio |1 + kappa d|; backwards the turn per length changes sign.
-    let curvature = if piece.is_forward() { kappa / stretch } else { -kappa / stretch };
     Place {
         piece: 0,
         xi,
         fraction: 0.0,
         step: 0.0,
-        direction: piece.direction(xi),
-        curvature,
+        direction,
+        bend,
         stretch,
         stretching,
         // Equation (20): V_d = V ((1 - w) |1 + kappa d| + w).
-        feed: piece.wish * ((1.0 - weight) * stretch + weight),
+        feed: if piece.is_rapid { f64::INFINITY } else { piece.wish * ((1.0 - weight) * stretch + weight * rise) },
         is_corner: false,
         is_rest: false,
     }
@@ -186,7 +189,7 @@ mod tests {
             let radius = 10.0 + distance;
             assert!((course.length() / (std::f64::consts::TAU * radius) - 1.0).abs() < 1e-9);
             for place in &course.places {
-                assert!((place.curvature * radius - 1.0).abs() < 1e-12 && !place.is_corner);
+                assert!((place.curvature() * radius - 1.0).abs() < 1e-12 && !place.is_corner);
                 let stretch = radius / 10.0;
                 assert!((place.feed - 10.0 * ((1.0 - weight) * stretch + weight)).abs() < 1e-12);
             }

@@ -50,7 +50,7 @@ pub struct AxisDemand {
 /// What a run asks of a machine.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Demand {
-    /// x and y.
+    /// x and y, and z where the path speaks of it.
     pub axes: Vec<AxisDemand>,
     /// The least time in s in which the path could be run at no more than the job's feed, within the velocities and accelerations of the
     /// machine and with the corner steps of this run; without a limit of jerk.
@@ -73,11 +73,13 @@ impl<'a> Recorder<'a> {
         self.setpoints.push(setpoint);
     }
 
-    /// What the run asks of x and y of `machine`. None where it has no two axes.
+    /// What the run asks of the axes of `machine`. None where it has no two axes.
     pub fn demand(mut self, machine: &MachineSettings, units: Units) -> Option<Demand> {
         // The path ends within the last tick.
         self.corners.push(self.setpoints.len() - 1);
-        let named = [machine.axes.first()?, machine.axes.get(1)?];
+        machine.axes.get(1)?;
+        let count = if self.path.pieces.iter().any(|piece| piece.height.is_some()) { 3 } else { 2 };
+        let named = machine.axes.iter().take(count);
         let of = |k: usize| match machine.axes.get(k) {
             Some(axis) => peaks::Limits { velocity: axis.velocity, acceleration: axis.acceleration, jerk: axis.jerk },
             None => peaks::Limits { velocity: f64::INFINITY, acceleration: f64::INFINITY, jerk: f64::INFINITY },
@@ -91,8 +93,8 @@ impl<'a> Recorder<'a> {
             limit: peak.limit / mm,
             verdict: peak.verdict,
         };
-        let [x, y, _] = found.steps.axes;
-        let axes = named.into_iter().zip(&found.axes).zip([x, y]);
+        let steps = found.steps.axes;
+        let axes = named.zip(&found.axes).zip(steps);
         let axes = axes.map(|((axis, peaks), step)| AxisDemand {
             axis: axis.name.letter(),
             velocity: asked(&peaks.velocity),
@@ -101,7 +103,8 @@ impl<'a> Recorder<'a> {
             corner_step: step.velocity / mm,
         });
         let axes = axes.collect();
-        let limits = Limits { corner_step: [x.velocity, y.velocity], ..Limits::of(machine, &PathSettings::default())? };
+        let corner_step = steps.map(|step| step.velocity);
+        let limits = Limits { corner_step, ..Limits::of(machine, &PathSettings::default())? };
         let least_time_s = bound(&Course::new(self.path, STEP_MM), &limits).time;
         Some(Demand { axes, least_time_s })
     }

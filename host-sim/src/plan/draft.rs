@@ -4,10 +4,11 @@ use super::bound::{self, Allowed};
 use super::caps::{Bends, Cap, Reason, caps};
 use super::course::{Course, Place};
 use super::law::{self, Law, Parts, Tolerance};
-use super::limits::{JERK_WINDOW, Limits};
+use super::limits::{AXES, JERK_WINDOW, Limits};
 use super::planner::Plan;
 use super::smooth::{self, State};
 use crate::path::PathPiece;
+use crate::vector::Vector;
 
 /// How far a law may be from the speeds that it follows, as a part of the speed, and of the acceleration limit.
 const SPEED_TOLERANCE: f64 = 5e-4;
@@ -27,23 +28,23 @@ const WITHOUT_LAW: f64 = 1.3;
 #[derive(Clone, Copy)]
 struct Middle {
     speed: f64,
-    /// Of both axes.
-    acceleration: [f64; 2],
+    /// Of all axes.
+    acceleration: Vector,
     /// The time that the whole step takes.
     duration: f64,
 }
 
-/// The accelerations of both axes at a time, in front of it and behind it.
+/// The accelerations of all axes at a time, in front of it and behind it.
 struct Sample {
     /// The place there, or at the end of the step.
     place: usize,
     time: f64,
-    acceleration: [[f64; 2]; 2],
+    acceleration: [Vector; 2],
 }
 
 /// The larger part that an acceleration is of what the axes bear.
-fn part(acceleration: [f64; 2], limits: &Limits) -> f64 {
-    (acceleration[0].abs() / limits.acceleration[0]).max(acceleration[1].abs() / limits.acceleration[1])
+fn part(acceleration: Vector, limits: &Limits) -> f64 {
+    acceleration.0.into_iter().zip(limits.acceleration).map(|(a, most)| a.abs() / most).fold(0.0, f64::max)
 }
 
 /// One attempt.
@@ -118,9 +119,8 @@ impl Draft {
             let speed = feed * stretch;
             let along = slope * stretch + mean(before.stretching, after.stretching) * feed * feed;
             let direction = before.direction + (after.direction - before.direction) * part;
-            let bend = mean(before.curvature, after.curvature) * speed * speed;
-            let a = direction * along + direction.left() * bend;
-            Some(Middle { speed, acceleration: [a.re, a.im], duration: law.duration })
+            let bend = (before.bend + (after.bend - before.bend) * part) * (speed * speed);
+            Some(Middle { speed, acceleration: direction * along + bend, duration: law.duration })
         };
         (0..places.len()).map(of).collect()
     }
@@ -143,20 +143,17 @@ impl Draft {
         }
     }
 
-    /// The accelerations of both axes in front of and behind each place.
-    fn accelerations(&self) -> Vec<[[f64; 2]; 2]> {
+    /// The accelerations of all axes in front of and behind each place.
+    fn accelerations(&self) -> Vec<[Vector; 2]> {
         let of = |(place, state): (&Place, &State)| {
-            state.acceleration.map(|along| {
-                let a =
-                    place.direction * along + place.direction.left() * (place.curvature * state.speed * state.speed);
-                [a.re, a.im]
-            })
+            let bend = place.bend * (state.speed * state.speed);
+            state.acceleration.map(|along| place.direction * along + bend)
         };
         self.course.places.iter().zip(&self.states).map(of).collect()
     }
 
     /// Changes of acceleration over the window of a jerk, at places and in the middle of steps, but across corners.
-    fn jerks(&self, limits: &Limits, accelerations: &[[[f64; 2]; 2]], middles: &[Option<Middle>], over: &mut [f64]) {
+    fn jerks(&self, limits: &Limits, accelerations: &[[Vector; 2]], middles: &[Option<Middle>], over: &mut [f64]) {
         let places = &self.course.places;
         let mut samples: Vec<Sample> = Vec::with_capacity(2 * places.len());
         let (mut time, mut from) = (0.0, 0);
@@ -187,8 +184,9 @@ impl Draft {
         let first = &samples[*from];
         // The time is the window or a little more.
         let time = (last.time - first.time).max(JERK_WINDOW);
-        let change = |axis: usize| (last.acceleration[1][axis] - first.acceleration[0][axis]).abs();
-        let asked = (0..2).map(|axis| change(axis) / (limits.jerk[axis] * time)).fold(0.0, f64::max);
+        let change = last.acceleration[1] - first.acceleration[0];
+        let asked =
+            change.0.into_iter().zip(limits.jerk).map(|(change, jerk)| change.abs() / (jerk * time)).fold(0.0, f64::max);
         if asked > 1.0 + MIDDLE_JERK {
             for over in &mut over[first.place..=last.place] {
                 *over = over.max(asked);
@@ -198,8 +196,8 @@ impl Draft {
 
     /// The pieces.
     pub(super) fn finish(self, pieces: &[PathPiece], limits: &Limits) -> Plan {
-        let [ax, ay] = limits.acceleration;
-        let tolerance = Tolerance { speed: SPEED_TOLERANCE, acceleration: ACCELERATION_TOLERANCE * ax.min(ay) };
+        let least = limits.acceleration.into_iter().fold(f64::INFINITY, f64::min);
+        let tolerance = Tolerance { speed: SPEED_TOLERANCE, acceleration: ACCELERATION_TOLERANCE * least };
         let slower = self.slower;
         let (mut planned, mut from, mut time) =
             (Vec::with_capacity(pieces.len()), Vec::with_capacity(pieces.len()), 0.0);
@@ -226,12 +224,12 @@ impl Draft {
     /// What limits each place: its cap where it is reached, else the acceleration or the jerk of an axis.
     fn reasons(&self, limits: &Limits) -> Vec<Reason> {
         let accelerations = self.accelerations();
-        let of = |((cap, state), sides): ((&Cap, &State), &[[f64; 2]; 2])| {
+        let of = |((cap, state), sides): ((&Cap, &State), &[Vector; 2])| {
             if state.speed >= cap.speed * (1.0 - 1e-3) {
                 return cap.reason;
             }
-            let part = |axis: usize| sides[0][axis].abs().max(sides[1][axis].abs()) / limits.acceleration[axis];
-            let axis = usize::from(part(1) > part(0));
+            let part = |axis: usize| sides[0].0[axis].abs().max(sides[1].0[axis].abs()) / limits.acceleration[axis];
+            let axis = (1..AXES).fold(0, |most, axis| if part(axis) > part(most) { axis } else { most });
             if part(axis) > 0.97 { Reason::Acceleration(axis) } else { Reason::Jerk(axis) }
         };
         self.caps.iter().zip(&self.states).zip(&accelerations).map(of).collect()
@@ -267,16 +265,16 @@ fn along(course: &Course, speed: &[f64], limits: &Limits, scale: &[f64]) -> Vec<
             let place = &places[k];
             let v = speed[k];
             let before = k.saturating_sub(1);
-            let (step, bends) = (place.step, place.curvature - places[before].curvature);
-            let bending = if step > 0.0 { bends / step.max(v * JERK_WINDOW) } else { 0.0 };
+            let (step, kappa) = (place.step, place.curvature());
+            let bends = place.bending(&places[before]);
+            let bending = if step > 0.0 { bends * (1.0 / step.max(v * JERK_WINDOW)) } else { Vector::default() };
             let a = if step > 0.0 { (v * v - speed[before] * speed[before]) / (2.0 * step) } else { 0.0 };
-            let along = [place.direction.re, place.direction.im];
-            let left = place.direction.left();
-            let across = [left.re, left.im];
-            (0..2)
+            let Vector(along) = place.direction;
+            let Vector(turning) = (bending - place.direction * (kappa * kappa)) * v.powi(3);
+            let Vector(across) = place.bend * (3.0 * v * a);
+            (0..AXES)
                 .map(|axis| {
-                    let taken = ((bending * across[axis] - place.curvature.powi(2) * along[axis]) * v.powi(3)).abs()
-                        + (3.0 * place.curvature * across[axis] * v * a).abs();
+                    let taken = turning[axis].abs() + across[axis].abs();
                     let jerk = limits.jerk[axis];
                     (jerk - taken).max(LEAST * jerk) * scale[k] / along[axis].abs()
                 })

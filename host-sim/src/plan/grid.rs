@@ -7,7 +7,7 @@ use shared::curve::Segment;
 
 use super::caps::{Bends, Cap, alone, caps};
 use super::course::{Course, Place};
-use super::limits::Limits;
+use super::limits::{AXES, Limits};
 use super::manner::Manner;
 use crate::path::PathPiece;
 
@@ -46,29 +46,36 @@ pub(super) fn places(pieces: &[PathPiece], weight: f64, limits: &Limits, manner:
     });
     let caps = caps(&coarse, limits, Bends::Steady, &vec![1.0; coarse.places.len()]);
     let least = first_step(limits);
-    let [jx, jy] = limits.jerk;
-    let wanted: Vec<f64> =
-        coarse.places.iter().zip(&caps).map(|(place, cap)| step(place, cap, jx.min(jy), least)).collect();
+    let jerk = least_of(limits.jerk);
+    let wanted: Vec<f64> = coarse.places.iter().zip(&caps).map(|(place, cap)| step(place, cap, jerk, least)).collect();
     let mut start = 0;
-    Course::through(pieces, weight, manner, |number, piece| {
+    let mut course = Course::through(pieces, weight, manner, |number, piece| {
         let end = start + coarse.places[start..].iter().take_while(|place| place.piece == number).count();
         // Away from its ends: a line is the same all along.
         let within = coarse.places[start..end]
             .iter()
-            .map(|place| step(place, &alone(place, limits, Bends::Steady, 1.0), jx.min(jy), least));
+            .map(|place| step(place, &alone(place, limits, Bends::Steady, 1.0), jerk, least));
         let longest = within.fold(0.0, f64::max);
         let parts = parts(piece, &coarse.places[start..end], &wanted[start..end], longest);
         start = end;
         parts
-    })
+    });
+    // A rapid asks for what the machine has: a number that can be shown.
+    let fastest = limits.velocity.into_iter().filter(|v| v.is_finite()).fold(0.0, f64::hypot);
+    for place in &mut course.places {
+        place.feed = if place.feed.is_finite() { place.feed } else { fastest };
+    }
+    course
 }
 
 /// The way from rest in two steps' time, in mm.
 fn first_step(limits: &Limits) -> f64 {
-    let [ax, ay] = limits.acceleration;
-    let [jx, jy] = limits.jerk;
-    let (a, j) = (ax.min(ay), jx.min(jy));
+    let (a, j) = (least_of(limits.acceleration), least_of(limits.jerk));
     if j.is_finite() { j * (2.0 * TIME).powi(3) / 6.0 } else { 0.5 * a * TIME * TIME }
+}
+
+fn least_of(of_axes: [f64; AXES]) -> f64 {
+    of_axes.into_iter().fold(f64::INFINITY, f64::min)
 }
 
 fn step(place: &Place, cap: &Cap, jerk: f64, least: f64) -> f64 {
@@ -76,7 +83,7 @@ fn step(place: &Place, cap: &Cap, jerk: f64, least: f64) -> f64 {
     let time =
         if jerk.is_finite() { (8.0 * SAG * cap.speed / jerk).sqrt().clamp(0.25 * TIME, TIME) } else { TIME_FREE };
     let even = STRETCHING * place.stretch * place.stretch / place.stretching.abs();
-    (cap.speed * time + least).min(even).min(TURN / place.curvature.abs()).max(cap.speed * SHORTEST)
+    (cap.speed * time + least).min(even).min(TURN / place.curvature()).max(cap.speed * SHORTEST)
 }
 
 /// The parts of a piece whose steps are what is wanted at the places looked at, and between these at most as much as growth allows.

@@ -110,7 +110,7 @@ pub(super) struct Parts {
 impl Parts {
     /// As few as follow the speeds: each entry is the place up to which the law holds.
     pub(super) fn of(piece: &PathPiece, places: &[Place], states: &[State], tolerance: Tolerance) -> Self {
-        let length = piece.segment_length();
+        let length = piece.way();
         let plain = |i: usize, j: usize| {
             let way = (places[j].fraction - places[i].fraction) * length;
             let feed = |k: usize| states[k].speed / places[k].stretch;

@@ -1,25 +1,29 @@
 //! What the axes and the path bear.
 
-use shared::machine::MachineSettings;
+use shared::machine::{AxisSettings, MachineSettings};
 
 use crate::machine::PathSettings;
+use crate::path::{Height, PathPiece};
 
 /// The time in s over which an acceleration is a mean, for a jerk: 8 ticks. A step of acceleration that is no larger than the jerk makes in
 /// this time counts as none. Without such a time every change of curvature would be a rest: on the way from a line into an arc the jerk is
 /// infinite at any speed.
 pub const JERK_WINDOW: f64 = 8.0 * shared::TICK as f64;
 
-/// Limits of x and y, and of the path. Lengths in mm, times in s.
+/// x, y and z.
+pub const AXES: usize = 3;
+
+/// Limits of the axes, and of the path. Lengths in mm, times in s.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limits {
     /// The largest |velocity| of each axis.
-    pub velocity: [f64; 2],
+    pub velocity: [f64; AXES],
     /// The largest |acceleration| of each axis.
-    pub acceleration: [f64; 2],
+    pub acceleration: [f64; AXES],
     /// The largest |jerk| of each axis, over [`JERK_WINDOW`]; infinite where it has none.
-    pub jerk: [f64; 2],
+    pub jerk: [f64; AXES],
     /// The largest step of each axis' velocity at a corner; 0 stops there.
-    pub corner_step: [f64; 2],
+    pub corner_step: [f64; AXES],
     /// The largest feed of the centre.
     pub feed: f64,
     /// The largest acceleration across the path; infinite where only the axes count.
@@ -27,20 +31,44 @@ pub struct Limits {
 }
 
 impl Limits {
-    /// Of a machine's x and y. None where it has no two axes.
+    /// Of a machine. None where it has no two axes; a third one that it does not have has no limits.
     ///
     /// Where nobody says what an axis' velocity may step by at a corner, it is what its acceleration makes in [`JERK_WINDOW`].
     pub fn of(machine: &MachineSettings, path: &PathSettings) -> Option<Self> {
-        let [x, y] = [machine.axes.first()?, machine.axes.get(1)?];
-        let usual = |acceleration: f64| acceleration * JERK_WINDOW;
+        machine.axes.get(1)?;
+        let of = |limit: fn(&AxisSettings) -> f64| {
+            std::array::from_fn(|axis| machine.axes.get(axis).map_or(f64::INFINITY, limit))
+        };
+        let acceleration: [f64; AXES] = of(|axis| axis.acceleration);
+        let mut corner_step = acceleration.map(|acceleration| acceleration * JERK_WINDOW);
+        for (step, said) in corner_step.iter_mut().zip(path.corner_step.into_iter().flatten()) {
+            *step = said;
+        }
         Some(Self {
-            velocity: [x.velocity, y.velocity],
-            acceleration: [x.acceleration, y.acceleration],
-            jerk: [x.jerk, y.jerk],
-            corner_step: path.corner_step.unwrap_or([usual(x.acceleration), usual(y.acceleration)]),
+            velocity: of(|axis| axis.velocity),
+            acceleration,
+            jerk: of(|axis| axis.jerk),
+            corner_step,
             feed: path.feed.unwrap_or(f64::INFINITY),
             centripetal: path.centripetal.unwrap_or(f64::INFINITY),
         })
+    }
+
+    /// The same without those of z where no piece moves it, so that they say nothing of a plane path.
+    pub(super) fn of_moving(&self, pieces: &[PathPiece]) -> Self {
+        let moves = |piece: &PathPiece| match piece.height {
+            None | Some(Height::Linear { slope: 0.0, .. }) => false,
+            Some(_) => true,
+        };
+        let mut limits = *self;
+        if !pieces.iter().any(moves) {
+            for of_axes in
+                [&mut limits.velocity, &mut limits.acceleration, &mut limits.jerk, &mut limits.corner_step]
+            {
+                of_axes[2] = f64::INFINITY;
+            }
+        }
+        limits
     }
 
     /// The same with every limit but the corner step times a factor.

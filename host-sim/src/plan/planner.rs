@@ -9,7 +9,7 @@ use super::caps::{Bends, Reason};
 use super::course::Course;
 use super::draft::{Draft, lessen};
 use super::grid;
-use super::limits::Limits;
+use super::limits::{AXES, Limits};
 use super::manner::Manner;
 use crate::path::{Path, PathPiece};
 
@@ -84,9 +84,10 @@ pub enum PlanError {
 /// on top of what the plan asks for where it happens. Errors: a speed at an end that the limits do not let be.
 pub fn planned(path: &Path, limits: &Limits, manner: &Manner) -> Result<(Path, Plan), PlanError> {
     let plan = plan(&path.pieces, path.weight, limits, manner)?;
-    let [x, y] = limits.velocity;
-    let fastest = plan.speed.iter().copied().fold(0.0, f64::max).min(x.hypot(y));
-    let part = |of: [f64; 2]| (HOLD * of[0].min(of[1]) / fastest).clamp(0.0, 1e6) as f32;
+    let limits = limits.of_moving(&path.pieces);
+    let [x, y, z] = limits.velocity;
+    let fastest = plan.speed.iter().copied().fold(0.0, f64::max).min(x.hypot(y).hypot(z));
+    let part = |of: [f64; AXES]| (HOLD * of.into_iter().fold(f64::INFINITY, f64::min) / fastest).clamp(0.0, 1e6) as f32;
     let slowest = PaceLimits::SLOWEST;
     let pace = PaceLimits {
         slope: part(limits.acceleration).max(slowest.slope),
@@ -104,9 +105,9 @@ pub fn plan(pieces: &[PathPiece], weight: f64, limits: &Limits, manner: &Manner)
 
 /// Plans pieces as near to the speeds at their ends as can be.
 pub(super) fn best(pieces: &[PathPiece], weight: f64, limits: &Limits, manner: &Manner) -> Plan {
-    let used = Plan::used(limits);
+    let used = Plan::used(&limits.of_moving(pieces));
     let course = grid::places(pieces, weight, &used, manner);
-    let lengths: Vec<f64> = pieces.iter().map(PathPiece::segment_length).collect();
+    let lengths: Vec<f64> = pieces.iter().map(PathPiece::way).collect();
     let draft = |bends: Bends, scale: &[f64]| Draft::new(course.clone(), &used, bends, scale);
     let settled = |bends: Bends| {
         let mut scale = vec![1.0; course.places.len()];

@@ -154,9 +154,9 @@ pub(super) fn smooth(course: &Course, caps: &[Cap], allowed: &[Allowed], speed: 
 
 /// Whether the way turns so sharply in front of place `k`, or rests, that the step of the velocity is what counts there.
 pub(super) fn parts(places: &[Place], k: usize) -> bool {
-    /// The sine of a turn from which on that is so: below it a chain of lines is run like a curve.
+    /// A turn in radians from which on that is so: below it a chain of lines is run like a curve.
     const TURN: f64 = 0.1;
-    let turn = |before: &Place| places[k].direction.cross(before.direction).abs();
+    let turn = |before: &Place| (places[k].direction - before.direction).norm();
     let before = k.checked_sub(1).and_then(|before| places.get(before));
     places[k].is_rest || (places[k].is_corner && before.is_some_and(|before| turn(before) > TURN))
 }

@@ -11,7 +11,7 @@ use std::collections::VecDeque;
 use super::bound;
 use super::caps::{Bends, caps};
 use super::draft::allowed;
-use super::limits::Limits;
+use super::limits::{AXES, JERK_WINDOW, Limits};
 use super::manner::Manner;
 use super::planner::{Plan, PlanError, best, check_ends};
 use crate::path::PathPiece;
@@ -111,7 +111,7 @@ impl<I: Iterator<Item = PathPiece>> Streamed<I> {
     fn reach(&self, plan: &Plan) -> f64 {
         let fastest = plan.speed.iter().copied().fold(0.0, f64::max);
         let time = |axis: usize| self.limits.acceleration[axis] / self.limits.jerk[axis];
-        6.0 * fastest * time(0).max(time(1)).max(4.0 * super::limits::JERK_WINDOW)
+        6.0 * fastest * (0..AXES).map(time).fold(4.0 * JERK_WINDOW, f64::max)
     }
 
     /// How many pieces nothing beyond the window can change.

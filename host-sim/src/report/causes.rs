@@ -1,10 +1,10 @@
-//! How causes are named and shown: a hue for each kind of limit, dark for x, light and hatched for y.
+//! How causes are named and shown: a hue for each kind of limit, dark for x, light and hatched for y, hatched on white for z.
 
 use plotters::style::RGBColor;
 
 use super::canvas::{Mark, Stroke};
 use super::limited::{Axis, Cause};
-use super::style::{INK, MAIN};
+use super::style::{INK, MAIN, PAPER};
 
 /// The colour of a cause, and of the lines over it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -35,13 +35,17 @@ impl Cause {
             Self::Machine => "machine\u{2019}s feed",
             Self::Velocity(Axis::X) => "x velocity",
             Self::Velocity(Axis::Y) => "y velocity",
+            Self::Velocity(Axis::Z) => "z velocity",
             Self::Acceleration(Axis::X) => "x acceleration",
             Self::Acceleration(Axis::Y) => "y acceleration",
+            Self::Acceleration(Axis::Z) => "z acceleration",
             Self::Centripetal => "acceleration across the path",
             Self::Jerk(Axis::X) => "x jerk",
             Self::Jerk(Axis::Y) => "y jerk",
+            Self::Jerk(Axis::Z) => "z jerk",
             Self::Corner(Axis::X) => "corner step of x",
             Self::Corner(Axis::Y) => "corner step of y",
+            Self::Corner(Axis::Z) => "corner step of z",
             Self::Rest => "rest",
         }
     }
@@ -52,6 +56,7 @@ impl Cause {
         let of = |[dark, light]: [RGBColor; 2], axis| match axis {
             Axis::X => plain(dark),
             Axis::Y => Look { colour: light, hatch: Some(Stroke::new(dark, HATCH)) },
+            Axis::Z => Look { colour: PAPER, hatch: Some(Stroke::new(dark, HATCH)) },
         };
         match self {
             Self::Job => plain(JOB),

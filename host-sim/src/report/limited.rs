@@ -15,18 +15,24 @@ pub const NUMBERED: usize = 12;
 /// The least way between two of them, as a part of the diagonal of the extent.
 const APART: f64 = 0.03;
 
-/// An axis of the plane.
+/// An axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Axis {
     /// Axis 0.
     X,
     /// Axis 1.
     Y,
+    /// Axis 2.
+    Z,
 }
 
 impl Axis {
     fn of(number: usize) -> Self {
-        if number == 0 { Self::X } else { Self::Y }
+        match number {
+            0 => Self::X,
+            1 => Self::Y,
+            _ => Self::Z,
+        }
     }
 
     /// Its number.

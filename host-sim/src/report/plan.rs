@@ -215,9 +215,9 @@ fn words(units: Units, plan: &Plan, limits: &Limits, cause: Cause, at: usize) ->
     let places = &plan.course.places;
     let (place, speed, unit) = (&places[at], plan.speed[at], units.short());
     let (before, after) = (&places[at.saturating_sub(1)], &places[(at + 1).min(places.len() - 1)]);
-    let (name, kappa) = (cause.name(), place.curvature.abs());
+    let (name, kappa) = (cause.name(), place.curvature());
     let bend = || format!("in a bend of radius {} {unit}", three_figures(1.0 / kappa / units.mm()));
-    let across = |axis: Axis| [place.direction.im, place.direction.re][axis.number()].abs() * kappa * speed * speed;
+    let across = |axis: Axis| place.bend.0[axis.number()].abs() * speed * speed;
     match cause {
         Cause::Job | Cause::Rest => name.to_string(),
         Cause::Machine => format!("{name}, {} {}", limit(units, limits.feed * 60.0), feed_unit(units)),
@@ -229,7 +229,7 @@ fn words(units: Units, plan: &Plan, limits: &Limits, cause: Cause, at: usize) ->
             format!("{name}, {} {unit}/s\u{b2}, {why}", limit(units, most))
         }
         Cause::Jerk(axis) => {
-            let changes = (after.curvature - before.curvature).abs() > 0.2 * kappa;
+            let changes = (after.curvature() - before.curvature()).abs() > 0.2 * kappa;
             let why = match (changes, across(axis) > 0.1 * limits.acceleration[axis.number()]) {
                 (true, _) => "where the bend changes".to_string(),
                 (false, true) => bend(),
@@ -239,9 +239,9 @@ fn words(units: Units, plan: &Plan, limits: &Limits, cause: Cause, at: usize) ->
         }
         Cause::Corner(axis) => {
             let [into, out] = if place.step == 0.0 { [before, place] } else { [place, after] };
-            let turn = (into.direction.conj() * out.direction).arg().abs() * 180.0 / PI;
+            let turn = into.direction.angle(out.direction) * 180.0 / PI;
             let change = out.direction - into.direction;
-            let step = [change.re, change.im][axis.number()].abs() * speed;
+            let step = change.0[axis.number()].abs() * speed;
             let most = limits.corner_step[axis.number()];
             let why = if step > 0.95 * most {
                 format!("{} {unit}/s", limit(units, most))
@@ -269,10 +269,10 @@ pub(super) mod tests {
     /// A common router's.
     pub fn limits() -> Limits {
         Limits {
-            velocity: [80.0; 2],
-            acceleration: [400.0; 2],
-            jerk: [8000.0; 2],
-            corner_step: [3.125; 2],
+            velocity: [80.0; 3],
+            acceleration: [400.0; 3],
+            jerk: [8000.0; 3],
+            corner_step: [3.125; 3],
             feed: f64::INFINITY,
             centripetal: f64::INFINITY,
         }

@@ -1,6 +1,7 @@
 //! The pictures of a plan: the feed over time, and the path in the plane, both in the colours of what limits them.
 
 use plotters::style::RGBColor;
+use shared::complex::Complex;
 
 use super::ReportError;
 use super::canvas::{Anchor, Canvas, Mark, Picture, Stroke, key_rows};
@@ -14,6 +15,7 @@ use super::style::{FRAME, GRID, INK, PAPER, SOFT, WIDTH};
 use crate::job::{Job, Units};
 use crate::path::Path;
 use crate::plan::Plan;
+use crate::vector::Vector;
 
 const LEFT: f64 = 66.0;
 const RIGHT: f64 = 16.0;
@@ -291,14 +293,19 @@ pub fn path_by_cause(job: &Job, path: &Path, plan: &Plan, limited: &Limited) -> 
     })
 }
 
+/// What is seen of a direction from above.
+fn plane(Vector([x, y, _]): Vector) -> Complex<f64> {
+    Complex::new(x, y)
+}
+
 /// Where a number may stand from its place, in picture units: the outside of the bend first.
 fn outward(plan: &Plan, at: usize) -> Vec<Point> {
     let places = &plan.course.places;
     let (before, after) = (&places[at.saturating_sub(1)], &places[(at + 1).min(places.len() - 1)]);
-    let along = before.direction + after.direction;
+    let [into, out] = [before, after].map(|place| plane(place.direction));
     // Where a line goes over into a bend nothing turns yet, but the bend has a side.
-    let turn = before.direction.cross(after.direction) + 1e-9 * (before.curvature + after.curvature);
-    let along = if along.norm() > 1e-6 { along } else { after.direction };
+    let turn = into.cross(out) + 1e-9 * (into.cross(plane(before.bend)) + out.cross(plane(after.bend)));
+    let along = if (into + out).norm() > 1e-6 { into + out } else { out };
     // To the right where the way turns left.
     let side = if turn > 0.0 { -along.left() } else { along.left() };
     let angle = (-side.im).atan2(side.re);

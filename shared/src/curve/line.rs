@@ -5,7 +5,7 @@ use crate::complex::Complex;
 use crate::piece::Shape;
 use crate::real::Real;
 
-/// The line from `start` to `end`; they differ.
+/// The line from `start` to `end`; they differ, unless only a further axis moves along it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Line<T> {
     /// The point at 0, in mm.

@@ -41,7 +41,8 @@ pub trait Curve<T: Real> {
 
     /// The point of the untrimmed offset of equation (2), at signed distance `offset` to the right of travel.
     fn offset_point(&self, xi: T, offset: T) -> Complex<T> {
-        self.point(xi) + self.tangent(xi).right() * offset
+        // A line along which only another axis moves has no tangent.
+        if offset == T::ZERO { self.point(xi) } else { self.point(xi) + self.tangent(xi).right() * offset }
     }
 
     /// The length of the whole segment, in mm.

@@ -2,7 +2,7 @@
 
 use std::ops::{Add, Mul, Neg, Sub};
 
-/// x, y and z, in mm where it is a point.
+/// x, y and z: a point in mm, or a direction.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Vector(pub [f64; 3]);
 
@@ -27,6 +27,11 @@ impl Vector {
     pub fn unit(self) -> Option<Self> {
         let norm = self.norm();
         (norm > 0.0 && norm.is_finite()).then(|| self * (1.0 / norm))
+    }
+
+    /// The angle to another direction, in radians.
+    pub fn angle(self, other: Self) -> f64 {
+        self.cross(other).norm().atan2(self.dot(other))
     }
 
     /// The point at a part of the way to another.
