@@ -9,9 +9,11 @@
 //! | [`input`] | files as they are read, and errors that name file, line and column |
 //! | [`program`] | programs, one motion after another: RS-274, cutter-location files, Sinumerik, drawings; and written |
 //! | [`contour`] | the part's curve: segments and nodes |
+//! | [`height`] | how z goes along a segment |
 //! | [`offset`] | the exact trimmed offset of a contour |
 //! | [`spline`] | splines through points, and ways to drive them at a constant feed |
 //! | [`fit`] | curves for the polylines of programs |
+//! | [`strokes`] | a program as the curves of the tool's centre, z and all, and what is done between them |
 //! | [`job`] | what a person wants: contour, offset, feed; the contour form |
 //! | [`path`] | the exact curves of the tool's centre in f64, and the pieces that a controller gets of them |
 //! | [`approach`] | the way to where a job begins |
@@ -35,6 +37,7 @@ pub mod approach;
 pub mod contour;
 pub mod controller;
 pub mod fit;
+pub mod height;
 pub mod input;
 pub mod job;
 pub mod machine;
@@ -54,6 +57,7 @@ pub mod session;
 pub mod simulate;
 pub mod spline;
 pub mod stream;
+pub mod strokes;
 pub mod transport;
 pub mod trimming;
 pub mod units;

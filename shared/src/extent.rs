@@ -189,14 +189,18 @@ pub struct SoftLimits<const F: usize = 1> {
 }
 
 impl<const F: usize> SoftLimits<F> {
-    /// The same in coordinates whose zero stands at `zero` of these, in mm; at most at the end of what a coordinate can say.
-    pub fn seen_from(self, zero: [f64; 2]) -> Self {
+    /// The same in coordinates whose zero stands at `zero` and `further` of these, in mm; at most at the end of what a coordinate can say.
+    pub fn seen_from(self, zero: [f64; 2], further: [f64; F]) -> Self {
         let [x, y] = zero.map(Fixed::from_mm);
         let moved = |[low, high]: [Fixed; 2], by: Fixed| {
             [Fixed(low.0.saturating_sub(by.0)), Fixed(high.0.saturating_sub(by.0))]
         };
         let [along_x, along_y] = self.plane;
-        Self { plane: [moved(along_x, x), moved(along_y, y)], ..self }
+        let mut seen = Self { plane: [moved(along_x, x), moved(along_y, y)], ..self };
+        for (travel, zero) in seen.further.iter_mut().zip(further) {
+            *travel = moved(*travel, Fixed::from_mm(zero));
+        }
+        seen
     }
 
     /// Whether all of a piece lies within the travel. Errors: the first axis that would leave it, by more than [`SLACK_MM`],

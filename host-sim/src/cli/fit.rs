@@ -163,7 +163,7 @@ impl Target {
             Self::Nothing => Ok(()),
             Self::Contours(chains) => chains.take(step).map_err(|error| error.to_string()),
             Self::Program(writer, left) => match step {
-                Step::Curves { fit, feed } => curves(writer, fit, *feed).map_err(|error| error.to_string()),
+                Step::Curves { fit, feed, .. } => curves(writer, fit, *feed).map_err(|error| error.to_string()),
                 Step::Kept(item) => match item.action {
                     Action::Motion(motion) => {
                         writer.motion(item.from, item.feed, &motion).map_err(|error| error.to_string())

@@ -37,9 +37,9 @@ pub struct Motion {
     /// The machine that shall run it: a job that leaves the machine's travel is refused, and a simulation says what it asks of the axes
     #[arg(long, value_name = "MACHINE.toml")]
     machine: Option<String>,
-    /// Where on the machine the job's zero stands, in the job's units, as 100,50: what lies within its travel depends on it
-    #[arg(long, value_name = "X,Y", value_parser = zero_from, default_value = "0,0", allow_hyphen_values = true)]
-    zero: [f64; 2],
+    /// Where on the machine the job's zero stands, in the job's units, as 100,50 or 100,50,-20: what lies within its travel depends on it
+    #[arg(long, value_name = "X,Y,Z", value_parser = zero_from, default_value = "0,0", allow_hyphen_values = true)]
+    zero: [f64; 3],
     #[command(flatten)]
     pacing: super::pacing::Pacing,
     /// Plan the feed within the limits of --machine: as fast as its axes bear, from rest to rest. Without it the job's own feed law is run
@@ -66,17 +66,21 @@ pub enum OrderName {
     Exact,
 }
 
-/// Two numbers with a comma between them.
-fn zero_from(text: &str) -> Result<[f64; 2], String> {
+/// Two or three numbers with commas between them; z is 0 where there are two.
+fn zero_from(text: &str) -> Result<[f64; 3], String> {
     let number = |part: &str| part.trim().parse().ok().filter(|x: &f64| x.is_finite());
-    let both = text.split_once(',').and_then(|(x, y)| Some([number(x)?, number(y)?]));
-    both.ok_or_else(|| "two numbers with a comma between them are needed, as 100,50".to_string())
+    let numbers: Option<Vec<f64>> = text.split(',').map(number).collect();
+    match numbers.as_deref() {
+        Some(&[x, y]) => Ok([x, y, 0.0]),
+        Some(&[x, y, z]) => Ok([x, y, z]),
+        _ => Err("two or three numbers with commas between them are needed, as 100,50 or 100,50,-20".to_string()),
+    }
 }
 
 impl Motion {
     /// Whether the job's zero is said to stand elsewhere than the machine's.
     pub fn is_elsewhere(&self) -> bool {
-        self.zero != [0.0; 2]
+        self.zero != [0.0; 3]
     }
 
     /// The machine that was named.
@@ -117,8 +121,8 @@ impl Motion {
         if let Some(name) = &self.machine {
             let machine = host_sim::machine::read(name)?.activate();
             let machine = machine.map_err(|error| InputError::new(name, error))?;
-            let zero = self.zero.map(|x| x * job.units.mm());
-            path.check_travel(&job, &machine.soft_limits().seen_from(zero))?;
+            let [x, y, z] = self.zero.map(|x| x * job.units.mm());
+            path.check_travel(&job, &machine.soft_limits().seen_from([x, y], [z]))?;
         }
         Ok((job, path))
     }

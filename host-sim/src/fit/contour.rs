@@ -77,7 +77,7 @@ impl Chains {
     /// Takes a step of a fitted program. Errors: it is none of a contour.
     pub fn take(&mut self, step: &Step<'_>) -> Result<(), Unfit> {
         match step {
-            Step::Curves { fit, feed } => fit.parts.iter().try_for_each(|part| self.curve(&part.curve, *feed)),
+            Step::Curves { fit, feed, .. } => fit.parts.iter().try_for_each(|part| self.curve(&part.curve, *feed)),
             Step::Kept(item) => match item.action {
                 Action::Motion(Motion::Arc(arc)) => self.arc(&arc, Vector(item.from), item.feed),
                 Action::Motion(Motion::Bezier { .. } | Motion::Nurbs(_)) => Err(Unfit::Curve),

@@ -20,6 +20,8 @@ pub enum Step<'a> {
         fit: &'a Fit,
         /// Their feed.
         feed: Feed,
+        /// The program's line of the first of them.
+        line: usize,
     },
     /// A motion or an event of the program that is no line.
     Kept(&'a Item<'a>),
@@ -50,6 +52,7 @@ pub struct Fitter<'a> {
     tolerance: f64,
     points: Vec<Vector>,
     feed: Feed,
+    line: usize,
     /// Whether the program may change the tolerance.
     listens: bool,
     summary: Summary,
@@ -64,6 +67,7 @@ impl<'a> Fitter<'a> {
             tolerance,
             points: Vec::new(),
             feed: Feed::Unset,
+            line: 0,
             listens: false,
             summary: Summary::default(),
             sink,
@@ -84,6 +88,7 @@ impl<'a> Fitter<'a> {
             }
             if self.points.is_empty() {
                 self.points.push(Vector(item.from));
+                self.line = item.line;
             }
             self.summary.lines += 1;
             if self.points.last() != Some(&Vector(to)) {
@@ -123,6 +128,6 @@ impl<'a> Fitter<'a> {
         all.max_deviation = fit.parts.iter().map(|part| part.deviation).fold(all.max_deviation, f64::max);
         all.max_tangent_break = all.max_tangent_break.max(found.tangent);
         all.max_curvature_jump = all.max_curvature_jump.max(found.curvature);
-        (self.sink)(Step::Curves { fit: &fit, feed: self.feed })
+        (self.sink)(Step::Curves { fit: &fit, feed: self.feed, line: self.line })
     }
 }

@@ -33,7 +33,19 @@ pub(super) fn job(source: Source) -> Result<Job, InputError> {
         return Err(places.segment_error(segment, OffsetError::Spline { segment }.sentence(offset, units)));
     }
     let chosen = raw.offset.and_then(|offset| offset.chosen).map(toml::Spanned::into_inner);
-    Ok(Job { units, tolerance, rest: raw.rest, offset, chosen, feed, contour, pieces, places })
+    Ok(Job {
+        units,
+        tolerance,
+        rest: raw.rest,
+        offset,
+        chosen,
+        feed,
+        contour,
+        strokes: Vec::new(),
+        events: Vec::new(),
+        pieces,
+        places,
+    })
 }
 
 /// Reads what an offset takes; what else the file says must be well-formed, no more.

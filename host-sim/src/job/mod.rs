@@ -12,6 +12,7 @@ use crate::contour::{Along, Contour};
 use crate::input::{InputError, Source};
 use crate::offset::Offset;
 use crate::program;
+use crate::strokes::{Event, Pace, Stroke};
 
 pub use crate::units::Units;
 use places::{Place, Places};
@@ -20,7 +21,7 @@ pub use reduction::{Corner, Reduction};
 /// The feed as a person gives it, in mm and seconds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FeedWish {
-    /// V in mm/s.
+    /// V in mm/s; 0 where the file gives none.
     pub rate: f64,
     /// w.
     pub weight: f64,
@@ -83,6 +84,10 @@ pub struct Job {
     pub feed: FeedWish,
     /// The contour C.
     pub contour: Contour,
+    /// The strokes of a program, which are run as they are; none where the job is a contour.
+    pub strokes: Vec<Stroke>,
+    /// What a program does between them.
+    pub events: Vec<Event>,
     /// The trimmed offset as the file gives it; without any the offset is trimmed when a path is made.
     pub pieces: Vec<GivenPiece>,
     /// Where the file says what, for errors that show later.
@@ -90,10 +95,10 @@ pub struct Job {
 }
 
 impl Job {
-    /// Reads a job by its file's ending: a contour, or a program that cuts one contour, whose lines become curves within 10 um, or within
-    /// what its G64 P says. Errors name file, line and column.
+    /// Reads a job by its file's ending: a contour, or a program, whose lines become curves within 10 um, or within what its G64 P says.
+    /// Errors name file, line and column.
     pub fn read(name: &str) -> Result<Self, InputError> {
-        contour_file::job(open(name)?)
+        if program::is_one(name) { program_file::job(name) } else { contour_file::job(open(name)?) }
     }
 
     /// Reads a contour from a text that is at hand; `name` stands in errors.
@@ -105,6 +110,9 @@ impl Job {
     pub fn with_feed(mut self, by: FeedOverride) -> Result<Self, InputError> {
         if let Some(rate) = by.rate {
             self.feed.rate = check_rate(rate).map_err(|m| InputError::new("--feed", m))? * self.units.mm() / 60.0;
+            for stroke in self.strokes.iter_mut().filter(|stroke| stroke.pace != Pace::Rapid) {
+                stroke.pace = Pace::Feed(self.feed.rate);
+            }
         }
         if let Some(weight) = by.weight {
             self.feed.weight = check_weight(weight).map_err(|m| InputError::new("--weight", m))?;
@@ -134,6 +142,11 @@ impl Job {
     /// An error about a piece of the path: at its `[[piece]]` where the job gives its pieces, at the `[[segment]]` that it runs
     /// along where it does not.
     pub fn piece_error(&self, piece: usize, along: Along, message: impl std::fmt::Display) -> InputError {
+        if !self.strokes.is_empty() {
+            let (Along::Segment { segment: number, .. } | Along::Fill { node: number, .. }) = along;
+            let line = self.strokes.get(number).map_or(1, |stroke| stroke.line);
+            return self.line_error(line, message);
+        }
         if !self.pieces.is_empty() {
             return self.places.piece_error(piece, message);
         }
@@ -145,6 +158,11 @@ impl Job {
                 self.places.segment_error(node, format_args!("the arc about node {node}: {message}"))
             }
         }
+    }
+
+    /// An error about a line of a program.
+    pub fn line_error(&self, line: usize, message: impl std::fmt::Display) -> InputError {
+        InputError { position: Some((line, 1)), ..InputError::new(self.name(), message) }
     }
 
     /// An error about the offset distance.

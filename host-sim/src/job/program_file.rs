@@ -1,25 +1,73 @@
-//! Programs as jobs: their lines become PH curves, and the one contour that they cut becomes the job.
+//! Programs as jobs: their lines become PH curves, and every motion is a stroke of the path.
+//!
+//! The offset of a program is that of the one contour that it cuts.
 
 use std::fs::File;
 use std::io::BufReader;
 
+use super::{FeedWish, Job, Place, Places, Reduction};
+use crate::contour::Contour;
 use crate::fit::Kind;
 use crate::fit::contour::{Chains, only};
 use crate::fit::program::{Fitter, Step};
 use crate::input::{InputError, Source};
 use crate::program;
+use crate::strokes::{Pace, Stroke, Strokes};
+use crate::units::Units;
+
+/// The widest gap between two strokes that is taken for none, in mm.
+const GAP_MM: f64 = 1e-3;
 
 /// How far curves may be from a program's lines in mm, where it does not say so itself (G64 P).
 pub const TOLERANCE_MM: f64 = 0.01;
 
+/// The job of a program: all that it does. Errors: those of its reader, and what the axes of a job cannot do.
+pub(super) fn job(name: &str) -> Result<Job, InputError> {
+    let mut strokes = Strokes::default();
+    read(name, &mut |step| strokes.take(&step))?;
+    let Strokes { strokes, events, .. } = strokes;
+    if strokes.is_empty() {
+        return Err(InputError::new(name, "the program moves nothing, so there is nothing to run"));
+    }
+    let cut = |stroke: &Stroke| if let Pace::Feed(feed) = stroke.pace { Some(feed) } else { None };
+    let rate = strokes.iter().find_map(cut).unwrap_or_default();
+    let feed = FeedWish { rate, weight: 0.0, reduction: Reduction::Fixed(1.0), ramp: 0.25 };
+    let segments = strokes.iter().map(|stroke| stroke.segment).collect();
+    let places = Places {
+        // Errors name lines; the text itself is not needed.
+        source: Source { name: name.to_string(), text: String::new() },
+        segments: Vec::new(),
+        pieces: Vec::new(),
+        distance: Place::Nowhere,
+        chosen: Place::Nowhere,
+    };
+    Ok(Job {
+        units: Units::Mm,
+        tolerance: GAP_MM,
+        rest: true,
+        offset: 0.0,
+        chosen: None,
+        feed,
+        contour: Contour { segments, closed: false },
+        strokes,
+        events,
+        pieces: Vec::new(),
+        places,
+    })
+}
+
+/// Gives the steps of a program to a sink, its lines as PH curves.
+fn read(name: &str, take: &mut dyn FnMut(Step<'_>) -> Result<(), String>) -> Result<(), InputError> {
+    let file = File::open(name).map_err(|error| InputError::new(name, format_args!("cannot be read: {error}")))?;
+    let mut fitter = Fitter::new(Kind::Ph, TOLERANCE_MM, take).with_the_programs_tolerance();
+    program::read(name, BufReader::new(file), &mut |item| fitter.take(item))?;
+    fitter.finish().map(|_| ()).map_err(|message| InputError::new(name, message))
+}
+
 /// The contour form of a program. Errors: those of its reader, and a program that cuts no contour, or several.
 pub(super) fn source(name: &str) -> Result<Source, InputError> {
-    let file = File::open(name).map_err(|error| InputError::new(name, format_args!("cannot be read: {error}")))?;
     let mut chains = Chains::default();
-    let mut take = |step: Step<'_>| chains.take(&step).map_err(|error| error.to_string());
-    let mut fitter = Fitter::new(Kind::Ph, TOLERANCE_MM, &mut take).with_the_programs_tolerance();
-    program::read(name, BufReader::new(file), &mut |item| fitter.take(item))?;
-    fitter.finish().map_err(|message| InputError::new(name, message))?;
+    read(name, &mut |step| chains.take(&step).map_err(|error| error.to_string()))?;
     let text = only(&chains.chains, None).map_err(|message| InputError::new(name, message))?.to_toml();
     // Lines and columns of errors are those of the contour, as `hodograph fit -o` writes it.
     Ok(Source { name: format!("{name} (as a contour)"), text })

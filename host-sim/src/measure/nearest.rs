@@ -111,7 +111,9 @@ impl<'a> Nearest<'a> {
 /// The parameter on a line nearest to `p`.
 pub(super) fn on_line(line: &Line<f64>, p: Complex<f64>) -> f64 {
     let chord = line.end - line.start;
-    (chord.dot(p - line.start) / chord.norm_sqr()).clamp(0.0, 1.0)
+    let square = chord.norm_sqr();
+    // A line along which only z moves is one point.
+    if square > 0.0 { (chord.dot(p - line.start) / square).clamp(0.0, 1.0) } else { 0.0 }
 }
 
 /// Parameters on an arc, of which one is nearest to `p`: where p lies towards or opposite, and both ends.

@@ -4,9 +4,9 @@
 
 mod drivable;
 mod even;
-mod height;
 mod piece;
 mod route;
+mod space;
 
 use shared::error::PathError;
 use shared::extent::SoftLimits;
@@ -19,10 +19,10 @@ use crate::input::InputError;
 use crate::job::Job;
 use crate::pacing;
 
-pub use height::{Height, Space};
 pub use piece::PathPiece;
 use route::Route;
 pub use route::Trimmed;
+pub use space::Space;
 
 /// A path that the controller accepts: every piece has passed the loader in the controller's own precision.
 #[derive(Clone, Debug)]

@@ -7,8 +7,9 @@ use shared::fixed::{Position, round_point};
 use shared::piece::{Piece, Shape, SplineShape};
 use shared::profile::Profile;
 
-use super::Height;
 use crate::contour::{Along, Contour};
+use crate::height::Height;
+use crate::strokes::{Entry, Pace, Stroke};
 
 /// One piece of the exact path.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,6 +22,8 @@ pub struct PathPiece {
     pub interval: [f64; 2],
     /// The offset distance; 0 on a fill arc, which is its own centre path.
     pub offset: f64,
+    /// How it is entered, whatever a plan's own manner is.
+    pub entry: Entry,
     /// Whether it is as fast as the machine can: a plan takes the machine's limits in the place of its feed.
     pub is_rapid: bool,
     /// How z goes along the segment; none where the path does not speak of it.
@@ -50,6 +53,7 @@ impl PathPiece {
             segment,
             interval,
             offset,
+            entry: Entry::Through,
             is_rapid: false,
             height: None,
             feed,
@@ -60,6 +64,33 @@ impl PathPiece {
             end: None,
             profile: None,
         })
+    }
+
+    /// A stroke of a program, the one of this number; `free` is the feed in mm/s where it has none of its own.
+    pub(super) fn of_stroke(number: usize, stroke: &Stroke, free: f64) -> Self {
+        let [from, to] = stroke.interval;
+        let feed = match stroke.pace {
+            Pace::Feed(feed) => feed,
+            Pace::Rapid | Pace::Unset => free,
+        };
+        // The way in space is longer than the one that the feed is along.
+        let feed = feed / stroke.height.stretch();
+        Self {
+            along: Along::Segment { segment: number, from, to },
+            segment: stroke.segment,
+            interval: stroke.interval,
+            offset: stroke.offset,
+            entry: stroke.entry,
+            is_rapid: stroke.pace == Pace::Rapid,
+            height: Some(stroke.height),
+            feed,
+            wish: feed,
+            start_corner: None,
+            end_corner: None,
+            start: None,
+            end: None,
+            profile: None,
+        }
     }
 
     /// The same over another interval.
@@ -175,7 +206,7 @@ impl PathPiece {
         let [from, to] = self.interval;
         let Cut { origin, mut shape } = self.segment.cut(from, to, self.offset);
         if let Shape::Spline(spline) = &mut shape {
-            spline.bow = self.bow();
+            spline.bow = self.height.map_or([0.0; 4], |height| height.bow(from, to));
         }
         Piece {
             origin: round_point(origin),

@@ -1,6 +1,8 @@
 //! Which curves the tool's centre runs along: the pieces that a job gives, the contour itself, or a loop of its trimmed offset;
 //! where they meet in a corner, and how the feed goes down there.
 
+use shared::complex::Complex;
+
 use super::PathPiece;
 use super::drivable::drivable;
 use super::even::even;
@@ -8,6 +10,11 @@ use crate::contour::{Along, SMOOTH};
 use crate::input::InputError;
 use crate::job::{Corner, Job};
 use crate::offset::{Loop, Offset};
+use crate::strokes::Pace;
+use crate::vector::Vector;
+
+/// How fast a rapid is where nobody plans it, in mm/s.
+const RAPID: f64 = 50.0;
 
 /// A trimmed offset, of which a path runs one loop.
 #[derive(Clone, Debug, PartialEq)]
@@ -37,7 +44,9 @@ impl Route {
                 "there is no loop to choose, because the job gives its pieces or has no offset; leave the choice out";
             return Err(job.choice_error(message));
         }
-        let pieces = if job.pieces.is_empty() {
+        let pieces = if !job.strokes.is_empty() {
+            strokes(job)?
+        } else if job.pieces.is_empty() {
             let whole = |segment| Along::Segment { segment, from: 0.0, to: 1.0 };
             bare(job, (0..job.contour.segments.len()).map(whole)).iter().flat_map(even).collect()
         } else {
@@ -92,7 +101,7 @@ impl Route {
 fn turns(whole: &[PathPiece], numbers: &[usize], closed: bool) -> Vec<[f64; 2]> {
     let turn = |before: usize, after: usize| match (whole.get(before), whole.get(after)) {
         (Some(before), Some(after)) => {
-            (before.direction(before.interval[1]).conj() * after.direction(after.interval[0])).arg()
+            turn_of(before.space(before.interval[1]).direction, after.space(after.interval[0]).direction)
         }
         _ => 0.0,
     };
@@ -107,6 +116,22 @@ fn turns(whole: &[PathPiece], numbers: &[usize], closed: bool) -> Vec<[f64; 2]> 
     let behind: Vec<f64> = between.chain([around]).collect();
     let into = std::iter::once(around).chain(behind.iter().copied());
     into.zip(behind.iter().copied()).map(|(into, behind)| [into, behind]).collect()
+}
+
+/// The angle between two directions: signed where both are in the plane, positive anticlockwise.
+fn turn_of(before: Vector, after: Vector) -> f64 {
+    let (Vector([a, b, 0.0]), Vector([c, d, 0.0])) = (before, after) else { return before.angle(after) };
+    (Complex::new(a, b).conj() * Complex::new(c, d)).arg()
+}
+
+/// The strokes of a program. Errors: one has no feed.
+fn strokes(job: &Job) -> Result<Vec<PathPiece>, InputError> {
+    if let Some(stroke) = job.strokes.iter().find(|stroke| stroke.pace == Pace::Unset) {
+        let message = "it cuts, and no feed was given before; give F with a feed in units a minute, or --feed";
+        return Err(job.line_error(stroke.line, message));
+    }
+    let piece = |(number, stroke)| PathPiece::of_stroke(number, stroke, RAPID);
+    Ok(job.strokes.iter().enumerate().map(piece).flat_map(|piece| even(&piece)).collect())
 }
 
 /// The curves alone.

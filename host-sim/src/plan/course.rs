@@ -4,7 +4,8 @@ use shared::curve::Segment;
 
 use super::manner::{Manner, Rests};
 use crate::contour::SMOOTH;
-use crate::path::{Height, Path, PathPiece, Space};
+use crate::path::{Path, PathPiece, Space};
+use crate::strokes::Entry;
 use crate::vector::Vector;
 
 /// One place on the way.
@@ -83,11 +84,11 @@ impl Course {
             let (before, after) = (places[k - 1].piece, places[k].piece);
             let is_node = before != after && pieces[before].segment != pieces[after].segment;
             let place = &mut places[k];
-            place.is_rest = match manner.rests {
-                Rests::Never => false,
-                Rests::InCorners => place.is_corner,
-                Rests::AtNodes => is_node,
-            };
+            // What a program asks for itself holds beside the manner.
+            let entry = pieces[after].entry;
+            let in_corner = manner.rests == Rests::InCorners || entry == Entry::RestInCorner;
+            let at_node = manner.rests == Rests::AtNodes || entry == Entry::Rest;
+            place.is_rest = (in_corner && place.is_corner) || (at_node && is_node);
         }
         Self { places, ends: manner.ends }
     }
@@ -148,11 +149,7 @@ fn length(piece: &PathPiece, from: f64, to: f64) -> f64 {
 
 fn place(piece: &PathPiece, weight: f64, xi: f64) -> Place {
     let Space { direction, bend, stretch, stretching } = piece.space(xi);
-    // What a rise alone makes of the way.
-    let rise = match piece.height {
-        Some(Height::Linear { slope, .. }) => slope.hypot(1.0),
-        _ => 1.0,
-    };
+    let rise = piece.height.map_or(1.0, |height| height.stretch());
     Place {
         piece: 0,
         xi,

@@ -3,7 +3,7 @@
 use shared::machine::{AxisSettings, MachineSettings};
 
 use crate::machine::PathSettings;
-use crate::path::{Height, PathPiece};
+use crate::path::PathPiece;
 
 /// The time in s over which an acceleration is a mean, for a jerk: 8 ticks. A step of acceleration that is no larger than the jerk makes in
 /// this time counts as none. Without such a time every change of curvature would be a rest: on the way from a line into an arc the jerk is
@@ -56,10 +56,7 @@ impl Limits {
 
     /// The same without those of z where no piece moves it, so that they say nothing of a plane path.
     pub(super) fn of_moving(&self, pieces: &[PathPiece]) -> Self {
-        let moves = |piece: &PathPiece| match piece.height {
-            None | Some(Height::Linear { slope: 0.0, .. }) => false,
-            Some(_) => true,
-        };
+        let moves = |piece: &PathPiece| piece.height.is_some_and(|height| !height.is_level());
         let mut limits = *self;
         if !pieces.iter().any(moves) {
             for of_axes in

@@ -1,29 +1,13 @@
-//! How z goes along a segment.
+//! How the tool's centre moves at a place of a piece, in space.
 
 use shared::complex::Complex;
-use shared::curve::{Curve as _, Segment, Spline};
+use shared::curve::{Curve as _, Segment};
 use shared::fixed::Fixed;
 use shared::further::Travel;
-use shared::spline::PolynomialSegment;
 
 use super::PathPiece;
+use crate::height::Height;
 use crate::vector::Vector;
-
-/// z along a whole segment, in mm. The tick moves z linearly along lines, arcs and PH curves, so that only a spline bends in space.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Height {
-    /// Linearly in the segment's own length.
-    Linear {
-        /// z at the segment's start.
-        start: f64,
-        /// What it rises for a mm of the segment.
-        slope: f64,
-    },
-    /// Straight up or down, on a line without a chord: from and to.
-    Vertical([f64; 2]),
-    /// The z of a spline's control points.
-    Bezier([f64; 6]),
-}
 
 /// The motion at a place for a unit of length that the feed is along: that of the contact point on C, that of z where only z moves, or the
 /// length in space of a spline that bends in z.
@@ -39,64 +23,20 @@ pub struct Space {
     pub stretching: f64,
 }
 
-impl Height {
-    /// From `from` to `to` along a segment.
-    pub fn between(segment: &Segment<f64>, [from, to]: [f64; 2]) -> Self {
-        let length = segment.length();
-        if length > 0.0 { Self::Linear { start: from, slope: (to - from) / length } } else { Self::Vertical([from, to]) }
-    }
-
-    /// z at a parameter of the segment.
-    pub fn at(&self, segment: &Segment<f64>, xi: f64) -> f64 {
-        match *self {
-            Self::Linear { start, slope: 0.0 } => start,
-            Self::Linear { start, slope } => start + slope * segment.length_to(xi),
-            Self::Vertical([from, to]) => from + (to - from) * xi,
-            Self::Bezier(ordinates) => ordinate(ordinates).point(xi).re,
-        }
-    }
-}
-
-/// The ordinates as a curve of one coordinate.
-fn ordinate(ordinates: [f64; 6]) -> Spline<f64> {
-    Spline { points: ordinates.map(|z| Complex::new(z, 0.0)), correction: shared::spline::CorrectionOrder::Natural }
-}
-
-/// A spline that bends in space.
-fn in_space(segment: &Segment<f64>, height: Option<Height>) -> Option<PolynomialSegment<f64, 3>> {
-    let (Segment::Spline(spline), Some(Height::Bezier(ordinates))) = (segment, height) else { return None };
-    let (plane, z) = (spline.segment(), ordinate(ordinates).segment());
-    let mut coefficients = [[0.0; 3]; 6];
-    for ((slot, [x, y]), [z, _]) in coefficients.iter_mut().zip(plane.0).zip(z.0) {
-        *slot = [x, y, z];
-    }
-    Some(PolynomialSegment(coefficients))
-}
-
 impl PathPiece {
     /// z at a parameter of the segment; none where the path does not speak of it.
     pub fn z(&self, xi: f64) -> Option<f64> {
         self.height.map(|height| height.at(&self.segment, xi))
     }
 
-    /// The length that the feed is along, from the start of the segment to a parameter, in mm: see [`Space`].
+    /// The length that the feed is along, from the start of the segment to a parameter, in mm ([`Height::way_to`]).
     pub fn way_to(&self, xi: f64) -> f64 {
-        match self.height {
-            Some(Height::Vertical([from, to])) => (to - from).abs() * xi,
-            Some(Height::Bezier(_)) => {
-                in_space(&self.segment, self.height).map_or(0.0, |curve| curve.length_over(-0.5, xi))
-            }
-            _ => self.segment.length_to(xi),
-        }
+        self.height.map_or_else(|| self.segment.length_to(xi), |height| height.way_to(&self.segment, xi))
     }
 
     /// The derivative of that length by the parameter, in mm.
     pub fn way_speed(&self, xi: f64) -> f64 {
-        match self.height {
-            Some(Height::Vertical([from, to])) => (to - from).abs(),
-            Some(Height::Bezier(_)) => in_space(&self.segment, self.height).map_or(0.0, |curve| curve.speed(xi - 0.5)),
-            _ => self.segment.speed(xi),
-        }
+        self.height.map_or_else(|| self.segment.speed(xi), |height| height.way_speed(&self.segment, xi))
     }
 
     /// How the centre moves at a parameter.
@@ -107,7 +47,7 @@ impl PathPiece {
             let direction = Vector([0.0, 0.0, (to - from).signum()]);
             return Space { direction, bend: Vector::default(), stretch: 1.0, stretching: 0.0 };
         }
-        if let Some(curve) = in_space(&self.segment, self.height) {
+        if let Some(curve) = self.height.and_then(|height| height.in_space(&self.segment)) {
             let [first, second] = [curve.derivative::<1>(xi - 0.5), curve.derivative::<2>(xi - 0.5)].map(Vector);
             let speed = first.norm();
             let direction = first * (1.0 / speed);
@@ -152,21 +92,12 @@ impl PathPiece {
         let [from, to] = self.interval.map(|xi| self.z(xi).map(|z| [Fixed::from_mm(z)]));
         Some(Travel { from: from?, to: to? })
     }
-
-    /// What z departs from its straight way by on the piece; zeros where it does not bend ([`shared::piece::SplineShape::bow`]).
-    pub(super) fn bow(&self) -> [f64; 4] {
-        let Some(Height::Bezier(ordinates)) = self.height else { return [0.0; 4] };
-        let [from, to] = self.interval;
-        let [_, _, c2, c3, c4, c5] = ordinate(ordinates).part(from, to).segment().0.map(|[z, _]| z);
-        let [b2, b3] = [-c4, -c5];
-        [0.25 * b2 - c2, 0.25 * b3 - c3, b2, b3]
-    }
 }
 
 #[cfg(test)]
 mod tests {
     use shared::active::ActivePiece;
-    use shared::curve::{Arc, Line, PhQuintic};
+    use shared::curve::{Arc, Line, PhQuintic, Spline};
     use shared::spline::CorrectionOrder;
 
     use super::*;

@@ -1,0 +1,272 @@
+//! From the steps of a program to its strokes.
+
+use std::f64::consts::TAU;
+
+use shared::complex::Complex;
+use shared::curve::{Arc as Circle, Line, Segment, Spline};
+use shared::spline::CorrectionOrder;
+
+use super::quintic::{self, Quintic, quintics};
+use super::{Entry, Event, Pace, Stroke, What};
+use crate::fit::{Curve, Kind, fit};
+use crate::fit::program::Step;
+use crate::height::Height;
+use crate::program::bspline::Clamped;
+use crate::program::item::{Compensation, PathMode};
+use crate::program::{Action, Arc, Feed, Item, Motion, Plane};
+use crate::vector::Vector;
+
+/// What is shorter is no motion, in mm.
+const SHORTEST: f64 = 1e-5;
+
+/// Heights that are the same, in mm.
+const LEVEL: f64 = 1e-9;
+
+/// Of a curve that is fitted anew: how far its chords and then the fit may be from it, and points that are one, in mm.
+const CHORD: f64 = 2e-4;
+const ANEW: f64 = 1e-3;
+const APART: f64 = 1e-4;
+
+/// How far the centre of an arc may be moved so that both of its ends are on one circle, in mm; programs are rounded.
+const MOVED: f64 = 0.01;
+
+/// Collects strokes and events.
+#[derive(Clone, Debug, Default)]
+pub struct Strokes {
+    /// The strokes in order.
+    pub strokes: Vec<Stroke>,
+    /// What is done between them.
+    pub events: Vec<Event>,
+    /// What is added to the program's coordinates.
+    shift: Vector,
+    end: Option<Vector>,
+    mode: Entry,
+    rests: bool,
+}
+
+/// What all strokes of one motion have.
+#[derive(Clone, Copy)]
+struct Of {
+    feed: Feed,
+    is_rapid: bool,
+    line: usize,
+}
+
+impl Strokes {
+    /// Takes a step of a program. The error is a sentence: what this cannot be done with.
+    pub fn take(&mut self, step: &Step<'_>) -> Result<(), String> {
+        match step {
+            Step::Curves { fit, feed, line } => {
+                let of = Of { feed: *feed, is_rapid: false, line: *line };
+                fit.parts.iter().try_for_each(|part| self.curve(&part.curve, of))
+            }
+            Step::Kept(item) => self.item(item),
+        }
+    }
+
+    /// Takes an item as it is, lines too. The error is a sentence.
+    pub fn item(&mut self, item: &Item<'_>) -> Result<(), String> {
+        match &item.action {
+            Action::Motion(motion) => self.motion(item, motion),
+            Action::Further { axis, .. } => {
+                Err(format!("the program moves {axis}; jobs have the axes X, Y and Z. Leave {axis} out"))
+            }
+            Action::PathMode(mode) => {
+                self.mode = match mode {
+                    PathMode::Exact => Entry::RestInCorner,
+                    PathMode::Stop => Entry::Rest,
+                    PathMode::Blend { .. } => Entry::Through,
+                };
+                Ok(())
+            }
+            Action::Compensation(Compensation::On { .. }) => Err(COMPENSATION.to_string()),
+            other => {
+                if let Some(what) = What::of(other) {
+                    self.rests |= what.rests();
+                    self.events.push(Event { before: self.strokes.len(), line: item.line, what });
+                }
+                Ok(())
+            }
+        }
+    }
+
+    fn motion(&mut self, item: &Item<'_>, motion: &Motion<'_>) -> Result<(), String> {
+        let from = Vector(item.from);
+        let of = Of { feed: item.feed, is_rapid: matches!(motion, Motion::Rapid { .. }), line: item.line };
+        match *motion {
+            Motion::Rapid { to } | Motion::Line { to } => {
+                self.line(from, Vector(to), of);
+                Ok(())
+            }
+            Motion::Arc(arc) => {
+                self.arc(&arc, item.from, of);
+                Ok(())
+            }
+            Motion::Bezier { points } => {
+                let all: Vec<[f64; 4]> =
+                    [item.from].iter().chain(points).map(|&[x, y, z]| [x, y, z, 1.0]).collect();
+                self.drawn(quintics(|at| quintic::rational(&all, at)), of)
+            }
+            Motion::Nurbs(nurbs) => {
+                let curve = Clamped::new(&nurbs).map_err(|error| error.to_string())?;
+                let parts = curve.pieces().flat_map(|piece| quintics(|at| quintic::rational(&piece, at)));
+                self.drawn(parts.collect(), of)
+            }
+        }
+    }
+
+    /// A curve that the program gives as such. Where its points all but stand still, as control points that coincide make them, no feed can be
+    /// kept: there the curve is fitted anew.
+    fn drawn(&mut self, parts: Vec<Quintic>, of: Of) -> Result<(), String> {
+        if parts.iter().all(quintic::is_lively) {
+            self.quintics(&parts, of);
+            return Ok(());
+        }
+        let mut points: Vec<Vector> = Vec::new();
+        for point in parts.iter().flat_map(|part| quintic::samples(part, CHORD)) {
+            if points.last().is_none_or(|&last| (point - last).norm() > APART) {
+                points.push(point);
+            }
+        }
+        let fit = fit(&points, Kind::Ph, ANEW);
+        fit.parts.iter().try_for_each(|part| self.curve(&part.curve, of))
+    }
+
+    fn curve(&mut self, curve: &Curve, of: Of) -> Result<(), String> {
+        match curve {
+            Curve::Line(line) => self.line(line.points[0], line.points[1], of),
+            Curve::Cubic(cubic) => {
+                let all = cubic.points.map(|Vector([x, y, z])| [x, y, z, 1.0]);
+                self.quintics(&quintics(|at| quintic::rational(&all, at)), of);
+            }
+            Curve::Ph(ph) => {
+                let points = ph.bezier().points;
+                let [.., z] = points[0].0;
+                // The tick moves z evenly along a PH curve; where it bends, the same curve is a quintic.
+                if points.iter().any(|point| (point.0[2] - z).abs() > LEVEL) {
+                    self.quintics(&[points], of);
+                    return Ok(());
+                }
+                let shift = self.join(points[0], points[5]);
+                let mut segment = ph.plane;
+                segment.start = flat(points[0] + shift);
+                self.push(Segment::Ph(segment), Height::level(z + shift.0[2]), of);
+            }
+        }
+        Ok(())
+    }
+
+    fn line(&mut self, from: Vector, to: Vector, of: Of) {
+        let shift = self.join(from, to);
+        let (from, to) = (from + shift, to + shift);
+        let [start, end] = [flat(from), flat(to)];
+        let is_upright = (end - start).norm() < SHORTEST;
+        let segment = Segment::Line(Line { start, end: if is_upright { start } else { end } });
+        self.push(segment, Height::between(&segment, [from.0[2], to.0[2]]), of);
+    }
+
+    /// Flat arcs and helices about z stay arcs, turn by turn; others become quintics.
+    fn arc(&mut self, arc: &Arc, from: [f64; 3], of: Of) {
+        let Some((radius, sweep)) = circle(arc, from) else {
+            self.quintics(&quintics(|at| quintic::arc(arc, from, at)), of);
+            return;
+        };
+        let shift = self.join(Vector(from), Vector(arc.to));
+        let [x, y, z] = (Vector(from) + shift).0;
+        let rise = arc.to[2] - from[2];
+        // One turn at a time.
+        let count = (sweep.abs() / TAU - 1e-9).ceil().max(1.0);
+        for k in 0..count as u32 {
+            let at = |part: u32| f64::from(part) / count;
+            let turned = radius * unit(sweep * at(k));
+            let start = Complex::new(x, y) - radius + turned;
+            let segment = Segment::Arc(Circle { start, radius: turned, sweep: sweep / count });
+            self.push(segment, Height::between(&segment, [z + rise * at(k), z + rise * at(k + 1)]), of);
+        }
+    }
+
+    fn quintics(&mut self, parts: &[Quintic], of: Of) {
+        for &points in parts {
+            let shift = self.join(points[0], points[5]);
+            let points = points.map(|point| point + shift);
+            let curve = Spline { points: points.map(flat), correction: CorrectionOrder::default() };
+            let heights = points.map(|Vector([_, _, z])| z);
+            let is_flat = heights.iter().all(|z| (z - heights[0]).abs() <= LEVEL);
+            let height =
+                if is_flat { Height::level(heights[0]) } else { Height::Bezier(heights) };
+            self.push(Segment::Spline(curve), height, of);
+        }
+    }
+
+    /// Moves what follows to where the tool is; gives by how much it is moved in all.
+    fn join(&mut self, from: Vector, to: Vector) -> Vector {
+        if let Some(end) = self.end
+            && (end - from).norm() > SHORTEST
+        {
+            self.shift = self.shift + (end - from);
+        }
+        self.end = Some(to);
+        self.shift
+    }
+
+    fn push(&mut self, segment: Segment<f64>, height: Height, of: Of) {
+        let mut stroke = Stroke {
+            segment,
+            interval: [0.0, 1.0],
+            offset: 0.0,
+            height,
+            pace: Pace::Unset,
+            entry: if self.rests { Entry::Rest } else { self.mode },
+            line: of.line,
+        };
+        let way = height.way_to(&segment, 1.0) * height.stretch();
+        if way < SHORTEST {
+            return;
+        }
+        stroke.pace = match of.feed {
+            _ if of.is_rapid => Pace::Rapid,
+            Feed::Unset => Pace::Unset,
+            Feed::Rate(rate) => Pace::Feed(rate),
+            Feed::Duration(time) => Pace::Feed(way / time),
+        };
+        self.rests = false;
+        self.strokes.push(stroke);
+    }
+}
+
+/// What is said of a program whose path is not that of the tool's centre.
+const COMPENSATION: &str = crate::fit::contour::COMPENSATION;
+
+/// Of a flat arc, or a helix about z: from the centre to its start, and the angle. The centre is moved so that both ends are on one circle. None
+/// where it would have to be moved far.
+fn circle(arc: &Arc, from: [f64; 3]) -> Option<(Complex<f64>, f64)> {
+    if arc.plane != Plane::Xy {
+        return None;
+    }
+    let [start, end] = [from, arc.to].map(|[x, y, _]| Complex::new(x, y));
+    let given = Complex::new(arc.centre[0], arc.centre[1]);
+    let chord = end - start;
+    if chord.norm() < SHORTEST {
+        return Some((start - given, arc.sweep));
+    }
+    // The nearest centre on the perpendicular bisector.
+    let middle = (start + end) * 0.5;
+    let centre = given - chord * ((given - middle).dot(chord) / chord.norm_sqr());
+    if (centre - given).norm() > MOVED {
+        return None;
+    }
+    let [first, last] = [start - centre, end - centre];
+    let angle = (first.conj() * last).arg();
+    // The same number of turns.
+    let sweep = angle + TAU * ((arc.sweep - angle) / TAU).round();
+    Some((first, sweep))
+}
+
+fn unit(angle: f64) -> Complex<f64> {
+    let (sine, cosine) = angle.sin_cos();
+    Complex::new(cosine, sine)
+}
+
+fn flat(Vector([x, y, _]): Vector) -> Complex<f64> {
+    Complex::new(x, y)
+}
