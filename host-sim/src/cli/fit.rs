@@ -164,6 +164,10 @@ impl Target {
             Self::Contours(chains) => chains.take(step).map_err(|error| error.to_string()),
             Self::Program(writer, left) => match step {
                 Step::Curves { fit, feed, .. } => curves(writer, fit, *feed).map_err(|error| error.to_string()),
+                Step::Lines { points, feed, .. } => points
+                    .windows(2)
+                    .try_for_each(|ends| writer.motion(ends[0].0, *feed, &Motion::Line { to: ends[1].0 }))
+                    .map_err(|error| error.to_string()),
                 Step::Kept(item) => match item.action {
                     Action::Motion(motion) => {
                         writer.motion(item.from, item.feed, &motion).map_err(|error| error.to_string())

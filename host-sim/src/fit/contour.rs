@@ -8,6 +8,7 @@ use std::fmt::{self, Write as _};
 use shared::complex::Complex;
 
 use super::Curve;
+use super::curve::Bezier;
 use super::program::Step;
 use super::vector::Vector;
 use crate::program::item::Compensation;
@@ -78,6 +79,9 @@ impl Chains {
     pub fn take(&mut self, step: &Step<'_>) -> Result<(), Unfit> {
         match step {
             Step::Curves { fit, feed, .. } => fit.parts.iter().try_for_each(|part| self.curve(&part.curve, *feed)),
+            Step::Lines { points, feed, .. } => points
+                .windows(2)
+                .try_for_each(|ends| self.curve(&Curve::Line(Bezier { points: [ends[0], ends[1]] }), *feed)),
             Step::Kept(item) => match item.action {
                 Action::Motion(Motion::Arc(arc)) => self.arc(&arc, Vector(item.from), item.feed),
                 Action::Motion(Motion::Bezier { .. } | Motion::Nurbs(_)) => Err(Unfit::Curve),

@@ -23,6 +23,15 @@ pub enum Step<'a> {
         /// The program's line of the first of them.
         line: usize,
     },
+    /// A chain of lines as it is, where lines are kept.
+    Lines {
+        /// Their ends, in mm.
+        points: &'a [Vector],
+        /// Their feed.
+        feed: Feed,
+        /// The program's line of the first of them.
+        line: usize,
+    },
     /// A motion or an event of the program that is no line.
     Kept(&'a Item<'a>),
 }
@@ -48,7 +57,7 @@ pub struct Summary {
 
 /// Takes the items of a program.
 pub struct Fitter<'a> {
-    kind: Kind,
+    kind: Option<Kind>,
     tolerance: f64,
     points: Vec<Vector>,
     feed: Feed,
@@ -63,7 +72,7 @@ impl<'a> Fitter<'a> {
     /// Gives what it makes to `sink`; the tolerance is in mm.
     pub fn new(kind: Kind, tolerance: f64, sink: &'a mut dyn FnMut(Step<'_>) -> Result<(), String>) -> Self {
         Self {
-            kind,
+            kind: Some(kind),
             tolerance,
             points: Vec::new(),
             feed: Feed::Unset,
@@ -72,6 +81,11 @@ impl<'a> Fitter<'a> {
             summary: Summary::default(),
             sink,
         }
+    }
+
+    /// Gives chains of lines as they are.
+    pub fn keeping_lines(sink: &'a mut dyn FnMut(Step<'_>) -> Result<(), String>) -> Self {
+        Self { kind: None, ..Self::new(Kind::Bezier, 0.0, sink) }
     }
 
     /// Where the program says a tolerance itself (G64 P), that one holds from there on.
@@ -120,7 +134,12 @@ impl<'a> Fitter<'a> {
         if points.len() < 2 {
             return Ok(());
         }
-        let fit = fit(&points, self.kind, self.tolerance);
+        let Some(kind) = self.kind else {
+            self.summary.points += points.len();
+            self.summary.segments += points.len() - 1;
+            return (self.sink)(Step::Lines { points: &points, feed: self.feed, line: self.line });
+        };
+        let fit = fit(&points, kind, self.tolerance);
         let found = joins(&fit.parts);
         let all = &mut self.summary;
         all.points += points.len();

@@ -7,6 +7,7 @@ use shared::curve::{Arc as Circle, Line, Segment, Spline};
 use shared::spline::CorrectionOrder;
 
 use super::quintic::{self, Quintic, quintics};
+use super::rounding::{Rounded, rounded};
 use super::{Entry, Event, Pace, Stroke, What};
 use crate::fit::{Curve, Kind, fit};
 use crate::fit::program::Step;
@@ -42,6 +43,7 @@ pub struct Strokes {
     end: Option<Vector>,
     mode: Entry,
     rests: bool,
+    rounding: Option<f64>,
 }
 
 /// What all strokes of one motion have.
@@ -53,12 +55,25 @@ struct Of {
 }
 
 impl Strokes {
+    /// Rounds the breaks of chains of lines within a tolerance in mm.
+    pub fn rounding(tolerance: f64) -> Self {
+        Self { rounding: Some(tolerance), ..Self::default() }
+    }
+
     /// Takes a step of a program. The error is a sentence: what this cannot be done with.
     pub fn take(&mut self, step: &Step<'_>) -> Result<(), String> {
         match step {
             Step::Curves { fit, feed, line } => {
                 let of = Of { feed: *feed, is_rapid: false, line: *line };
                 fit.parts.iter().try_for_each(|part| self.curve(&part.curve, of))
+            }
+            Step::Lines { points, feed, line } => {
+                let of = Of { feed: *feed, is_rapid: false, line: *line };
+                match self.rounding {
+                    Some(tolerance) => rounded(points, tolerance).iter().for_each(|part| self.rounded(part, of)),
+                    None => points.windows(2).for_each(|ends| self.line(ends[0], ends[1], of)),
+                }
+                Ok(())
             }
             Step::Kept(item) => self.item(item),
         }
@@ -163,6 +178,29 @@ impl Strokes {
         let is_upright = (end - start).norm() < SHORTEST;
         let segment = Segment::Line(Line { start, end: if is_upright { start } else { end } });
         self.push(segment, Height::between(&segment, [from.0[2], to.0[2]]), of);
+    }
+
+    fn rounded(&mut self, part: &Rounded, of: Of) {
+        let Rounded::Arc { ends: [from, to], centre, angle } = *part else {
+            if let Rounded::Line([from, to]) = *part {
+                self.line(from, to, of);
+            }
+            return;
+        };
+        let ([radius, end], is_level) = ([from - centre, to - centre], (from - to).0[2].abs() <= LEVEL);
+        if is_level && (from - centre).0[2].abs() <= LEVEL {
+            let sweep = angle.copysign(radius.cross(end).0[2]);
+            let arc = Arc { plane: Plane::Xy, centre: [centre.0[0], centre.0[1]], to: to.0, sweep, turns: 0 };
+            return self.arc(&arc, from.0, of);
+        }
+        // In the plane of the arc: its radius, and as long across it.
+        let across = (end - radius * angle.cos()) * (1.0 / angle.sin());
+        let jet = |at: f64| {
+            let (sine, cosine) = (angle * at).sin_cos();
+            let spoke = radius * cosine + across * sine;
+            [centre + spoke, (across * cosine - radius * sine) * angle, spoke * (-angle * angle)]
+        };
+        self.quintics(&quintics(jet), of);
     }
 
     /// Flat arcs and helices about z stay arcs, turn by turn; others become quintics.

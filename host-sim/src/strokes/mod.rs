@@ -10,6 +10,7 @@
 mod builder;
 mod event;
 pub mod quintic;
+pub mod rounding;
 
 use shared::curve::Segment;
 

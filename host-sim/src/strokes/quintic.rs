@@ -147,20 +147,19 @@ mod tests {
         ];
         for (number, curve) in curves.into_iter().enumerate() {
             let found = quintics(curve);
-            let parts = found.len() as f64;
-            for (k, quintic) in found.iter().enumerate() {
-                for j in 0..=50 {
-                    let part = f64::from(j) / 50.0;
-                    let exact = curve((k as f64 + part) / parts)[0];
-                    let off = (point(quintic, part) - exact).norm();
-                    assert!(off <= TOLERANCE_MM * 1.05, "{number} {k} {part}: {off}");
+            let exact: Vec<Vector> = (0..=20_000).map(|k| curve(f64::from(k) / 2e4)[0]).collect();
+            for quintic in &found {
+                for j in 0..=20 {
+                    let here = point(quintic, f64::from(j) / 20.0);
+                    let off = exact.windows(2).map(|w| here.from_segment(w[0], w[1])).fold(f64::INFINITY, f64::min);
+                    assert!(off <= TOLERANCE_MM * 1.05, "{number} {j}: {off}");
                 }
             }
             for pair in found.windows(2) {
-                let bend = |a: Vector, b: Vector, c: Vector| (a - b * 2.0 + c) * 20.0;
-                let ([.., a, b, c], [_, d, e, _, _, _]) = (pair[0], pair[1]);
-                assert!((c - b - (d - pair[1][0])).norm() < 1e-9);
-                assert!((bend(a, b, c) - bend(pair[1][0], d, e)).norm() < 1e-7);
+                let [end, start] = [casteljau(pair[0].to_vec(), 1.0), casteljau(pair[1].to_vec(), 0.0)];
+                let bend = |[_, first, second]: Jet| first.cross(second) * (1.0 / first.norm().powi(3));
+                assert!((end[0] - start[0]).norm() < 1e-9 && end[1].angle(start[1]) < 1e-9);
+                assert!((bend(end) - bend(start)).norm() < 1e-9 * bend(end).norm());
             }
         }
         // The quarter is of radius 50 indeed.
