@@ -196,7 +196,7 @@ pub(super) fn hermite(from: &Node, to: &Node) -> Option<PhQuintic<f64>> {
         if size == 0.0 || (size < EXACT && size > 0.5 * before) {
             let back = (chord * (1.0 / length)).sqrt() * length.sqrt();
             let w = [e0 * x[0], Complex::new(x[2], x[3]), e2 * x[1]].map(|w| w * back);
-            return (x[0] > 0.0 && x[1] > 0.0).then_some(PhQuintic { start: from.point, w });
+            return (x[0] > 0.0 && x[1] > 0.0 && is_lively(w)).then_some(PhQuintic { start: from.point, w });
         }
         before = size;
         // The least step that would do: on a straight way the speeds along it are open.
@@ -206,6 +206,19 @@ pub(super) fn hermite(from: &Node, to: &Node) -> Option<PhQuintic<f64>> {
         x.iter_mut().zip(step).for_each(|(x, step)| *x -= damped * step);
     }
     None
+}
+
+/// Whether a curve with this preimage nowhere comes near to standing still, where no feed could be kept in the digits of a controller.
+fn is_lively([w0, w1, w2]: [Complex<f64>; 3]) -> bool {
+    /// The least speed, as a part of the largest.
+    const PART: f64 = 0.02;
+    const LOOKS: u32 = 8;
+    let speeds = (0..=LOOKS).map(|k| {
+        let t = f64::from(k) / f64::from(LOOKS);
+        (w0 * ((1.0 - t) * (1.0 - t)) + w1 * (2.0 * t * (1.0 - t)) + w2 * (t * t)).norm_sqr()
+    });
+    let (least, most) = speeds.fold((f64::INFINITY, 0.0), |(least, most), speed| (speed.min(least), speed.max(most)));
+    least > PART * most
 }
 
 /// The four conditions' derivatives and what is left of them.

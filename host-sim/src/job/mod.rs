@@ -12,7 +12,7 @@ use crate::contour::{Along, Contour};
 use crate::input::{InputError, Source};
 use crate::offset::Offset;
 use crate::program;
-use crate::strokes::{Event, Pace, Stroke};
+use crate::strokes::{Event, Pace, Stroke, Strokes};
 
 pub use crate::units::Units;
 use places::{Place, Places};
@@ -99,6 +99,11 @@ impl Job {
     /// Errors name file, line and column.
     pub fn read(name: &str) -> Result<Self, InputError> {
         if program::is_one(name) { program_file::job(name) } else { contour_file::job(open(name)?) }
+    }
+
+    /// The job of a program's strokes; `name` stands in errors. Errors: there is no stroke.
+    pub fn from_strokes(name: &str, strokes: Strokes) -> Result<Self, InputError> {
+        program_file::of_strokes(name, strokes)
     }
 
     /// Reads a contour from a text that is at hand; `name` stands in errors.

@@ -12,7 +12,7 @@ use crate::fit::contour::{Chains, only};
 use crate::fit::program::{Fitter, Step};
 use crate::input::{InputError, Source};
 use crate::program;
-use crate::strokes::{Pace, Stroke, Strokes};
+use crate::strokes::{self, Lines, Pace, Stroke, Strokes};
 use crate::units::Units;
 
 /// The widest gap between two strokes that is taken for none, in mm.
@@ -23,9 +23,16 @@ pub const TOLERANCE_MM: f64 = 0.01;
 
 /// The job of a program: all that it does. Errors: those of its reader, and what the axes of a job cannot do.
 pub(super) fn job(name: &str) -> Result<Job, InputError> {
-    let mut strokes = Strokes::default();
-    read(name, &mut |step| strokes.take(&step))?;
-    let Strokes { strokes, events, .. } = strokes;
+    of_strokes(name, strokes::read(name, open(name)?, Lines::FittedAsTold(Kind::Ph, TOLERANCE_MM))?)
+}
+
+fn open(name: &str) -> Result<BufReader<File>, InputError> {
+    let file = File::open(name).map_err(|error| InputError::new(name, format_args!("cannot be read: {error}")))?;
+    Ok(BufReader::new(file))
+}
+
+/// The job of strokes. Errors: there are none.
+pub(super) fn of_strokes(name: &str, Strokes { strokes, events, .. }: Strokes) -> Result<Job, InputError> {
     if strokes.is_empty() {
         return Err(InputError::new(name, "the program moves nothing, so there is nothing to run"));
     }
@@ -56,18 +63,13 @@ pub(super) fn job(name: &str) -> Result<Job, InputError> {
     })
 }
 
-/// Gives the steps of a program to a sink, its lines as PH curves.
-fn read(name: &str, take: &mut dyn FnMut(Step<'_>) -> Result<(), String>) -> Result<(), InputError> {
-    let file = File::open(name).map_err(|error| InputError::new(name, format_args!("cannot be read: {error}")))?;
-    let mut fitter = Fitter::new(Kind::Ph, TOLERANCE_MM, take).with_the_programs_tolerance();
-    program::read(name, BufReader::new(file), &mut |item| fitter.take(item))?;
-    fitter.finish().map(|_| ()).map_err(|message| InputError::new(name, message))
-}
-
 /// The contour form of a program. Errors: those of its reader, and a program that cuts no contour, or several.
 pub(super) fn source(name: &str) -> Result<Source, InputError> {
     let mut chains = Chains::default();
-    read(name, &mut |step| chains.take(&step).map_err(|error| error.to_string()))?;
+    let mut take = |step: Step<'_>| chains.take(&step).map_err(|error| error.to_string());
+    let mut fitter = Fitter::new(Kind::Ph, TOLERANCE_MM, &mut take).with_the_programs_tolerance();
+    program::read(name, open(name)?, &mut |item| fitter.take(item))?;
+    fitter.finish().map_err(|message| InputError::new(name, message))?;
     let text = only(&chains.chains, None).map_err(|message| InputError::new(name, message))?.to_toml();
     // Lines and columns of errors are those of the contour, as `hodograph fit -o` writes it.
     Ok(Source { name: format!("{name} (as a contour)"), text })

@@ -2,7 +2,7 @@
 //!
 //! | module | what |
 //! | --- | --- |
-//! | `simulation`, `plan`, `reproduction`, `feed_correction` | the reports: what stands in which order, and the sentences between |
+//! | `simulation`, `plan`, `reproduction`, `feed_correction`, `spline_fit` | the reports: what stands in which order, and the sentences between |
 //! | `figures`, `plan_figures` | one function for each kind of picture |
 //! | `limited`, `causes` | what limits a plan and where; how that is named and coloured |
 //! | `tables` | published tables beside what came out here |
@@ -25,6 +25,7 @@ mod plane;
 mod reproduction;
 mod series;
 mod simulation;
+mod spline_fit;
 mod style;
 mod tables;
 
@@ -39,6 +40,7 @@ pub use feed_correction::feed_correction;
 pub use plan::plan;
 pub use reproduction::reproduction;
 pub use simulation::simulation;
+pub use spline_fit::spline_fit;
 
 /// Why there is no report.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

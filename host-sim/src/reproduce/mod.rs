@@ -2,6 +2,7 @@
 
 pub mod farouki2018;
 pub mod feed_correction;
+pub mod spline_fit;
 
 use serde::Serialize;
 

@@ -10,6 +10,7 @@
 mod builder;
 mod event;
 pub mod quintic;
+mod read;
 pub mod rounding;
 
 use shared::curve::Segment;
@@ -17,6 +18,7 @@ use shared::curve::Segment;
 use crate::height::Height;
 
 pub use builder::Strokes;
+pub use read::{Lines, read};
 pub use event::{Event, What};
 
 /// How fast a stroke is.

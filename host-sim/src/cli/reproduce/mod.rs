@@ -2,6 +2,7 @@
 
 mod farouki2018;
 mod feed_correction;
+mod spline_fit;
 
 use std::fs;
 
@@ -9,6 +10,7 @@ use clap::{Args, ValueEnum};
 use host_sim::input::InputError;
 use host_sim::report::{self, ReportError};
 use host_sim::reproduce::farouki2018::{REDUCTIONS, WEIGHTS, reproduce as farouki};
+use host_sim::reproduce::spline_fit as spline;
 use host_sim::reproduce::feed_correction::{Airfoil, STEPS, reproduce as feed_correction};
 use serde::Serialize;
 
@@ -19,7 +21,7 @@ use super::output::{failed, json, write};
 #[derive(Args)]
 #[command(
     after_help = "Examples:\n  hodograph reproduce farouki2018 --report farouki2018.html\n  hodograph reproduce \
-                        feed-correction --report feed-correction.html"
+                        feed-correction --report feed-correction.html\n  hodograph reproduce spline-fit --report spline-fit.html"
 )]
 pub struct Reproduce {
     /// Which experiment
@@ -42,6 +44,8 @@ enum Name {
     Farouki2018,
     /// The feed correction polynomial: a fan and an airfoil under every way to interpolate, and what its fits cost
     FeedCorrection,
+    /// Toolpath spline approximation: one program of lines as lines, arcs, and splines of every kind within the same limits
+    SplineFit,
 }
 
 impl Reproduce {
@@ -57,6 +61,12 @@ impl Reproduce {
                 let result = farouki(|| bar.inc(1)).map_err(Failure::Run)?;
                 bar.finish_and_clear();
                 self.show(&result, report::reproduction, farouki2018::print)
+            }
+            Name::SplineFit => {
+                let bar = super::progress_of(spline::STEPS, "way {pos} of {len}");
+                let result = spline::reproduce(|| bar.inc(1)).map_err(Failure::Run)?;
+                bar.finish_and_clear();
+                self.show(&result, report::spline_fit, spline_fit::print)
             }
             Name::FeedCorrection => {
                 let airfoil = self.read_airfoil()?;
