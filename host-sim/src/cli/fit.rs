@@ -23,7 +23,7 @@ use super::output::{create, failed, json, write};
     after_help = "Examples:\n  hodograph fit examples/heart.ngc --tolerance 0.01 --curve ph -o heart.toml\n  hodograph fit part.nc --tolerance 0.01 --curve bspline -o part.mpf --json -"
 )]
 pub struct FitVerb {
-    /// The program: .nc .ngc .gcode .tap (RS-274), .mpf .spf (Sinumerik), .apt .cls (cutter location)
+    /// The program: .nc .ngc .gcode .tap (RS-274), .mpf .spf (Sinumerik), .apt .cls (cutter location), or the drawing: .svg .dxf
     input: String,
     /// How far the curves may be from the lines, and the lines from the curves, in mm
     #[arg(long, value_name = "MM", allow_negative_numbers = true)]
@@ -106,9 +106,16 @@ impl FitVerb {
         let input = BufReader::new(bar.wrap_read(file));
         let mut give = |step: Step<'_>| target.take(&step);
         let mut fitter = Fitter::new(kind, self.tolerance, &mut give);
-        program::read(&self.input, input, &mut |item| fitter.take(item))?;
+        let is_contour = self.output.as_deref().is_some_and(|name| ending(name) == "toml");
+        if is_contour || program::is_drawing(&self.input) {
+            fitter = fitter.with_its_curves();
+        }
+        let left_out = program::read(&self.input, input, &mut |item| fitter.take(item))?;
         let summary = fitter.finish().map_err(|message| InputError::new(&self.input, message))?;
         bar.finish_and_clear();
+        for warning in left_out {
+            eprintln!("{}: {warning}", self.input);
+        }
         if let Target::Program(writer, left) = target {
             let name = self.output.as_deref().unwrap_or_default();
             let mut out = writer.finish().map_err(|error| failed(name, error))?;

@@ -17,8 +17,8 @@ use crate::program::{Action, Arc, Feed, Motion, Plane};
 /// One contour.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Chain {
-    /// Its feed in mm/s.
-    pub feed: f64,
+    /// Its feed in mm/s; none where nothing says one, as in a drawing.
+    pub feed: Option<f64>,
     /// Where it begins.
     pub start: Vector,
     /// Where it ends.
@@ -38,7 +38,7 @@ enum Segment {
 /// Why steps make no contour.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Unfit {
-    /// A cut has no feed per minute.
+    /// A cut has a time in the place of a feed.
     NoFeed,
     /// A curve other than a line, an arc or a fitted one.
     Curve,
@@ -51,7 +51,7 @@ pub enum Unfit {
 impl fmt::Display for Unfit {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
-            Self::NoFeed => "a contour needs a feed per minute; give F before the first cut",
+            Self::NoFeed => "a contour has a feed per minute; give F under G94",
             Self::Curve => "the contour form takes lines and arcs of a program; write to .mpf instead",
             Self::Compensation => COMPENSATION,
             Self::Height => "a curve changes its height, and a contour has none; write to .mpf instead",
@@ -126,7 +126,11 @@ impl Chains {
     }
 
     fn push(&mut self, [start, end]: [Vector; 2], segment: Segment, feed: Feed) -> Result<(), Unfit> {
-        let Feed::Rate(feed) = feed else { return Err(Unfit::NoFeed) };
+        let feed = match feed {
+            Feed::Rate(feed) => Some(feed),
+            Feed::Unset => None,
+            Feed::Duration(_) => return Err(Unfit::NoFeed),
+        };
         match self.chains.last_mut().filter(|chain| self.is_open && chain.feed == feed) {
             Some(chain) => {
                 chain.end = end;
@@ -191,7 +195,11 @@ impl Chain {
     /// The contour form of it, in mm and mm/min.
     pub fn to_toml(&self) -> String {
         let closed = (self.end - self.start).norm() < SAME;
-        let mut text = format!("units = \"mm\"\nclosed = {closed}\n\n[feed]\nrate = {:?}\n", self.feed * 60.0);
+        let mut text = format!("units = \"mm\"\nclosed = {closed}\n");
+        if let Some(feed) = self.feed {
+            // Writing to a string does not fail.
+            let _ = write!(text, "\n[feed]\nrate = {:?}\n", feed * 60.0);
+        }
         let [x, y, _] = self.start.0;
         for (number, segment) in self.segments.iter().enumerate() {
             let start = if number == 0 { format!("start = [{x:?}, {y:?}], ") } else { String::new() };

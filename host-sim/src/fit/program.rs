@@ -9,6 +9,7 @@ use super::joins::joins;
 use super::vector::Vector;
 use super::{Fit, Kind, fit};
 use crate::program::item::PathMode;
+use crate::program::quintic;
 use crate::program::{Action, Feed, Item, Motion};
 
 /// What a program comes to, one after the other.
@@ -55,6 +56,9 @@ pub struct Summary {
     pub max_curvature_jump: f64,
 }
 
+/// Points that are one, in mm: less is rounding.
+const SAME: f64 = 1e-9;
+
 /// Takes the items of a program.
 pub struct Fitter<'a> {
     kind: Option<Kind>,
@@ -64,6 +68,8 @@ pub struct Fitter<'a> {
     line: usize,
     /// Whether the program may change the tolerance.
     listens: bool,
+    /// Whether its curves are fitted too.
+    samples: bool,
     summary: Summary,
     sink: &'a mut dyn FnMut(Step<'_>) -> Result<(), String>,
 }
@@ -78,6 +84,7 @@ impl<'a> Fitter<'a> {
             feed: Feed::Unset,
             line: 0,
             listens: false,
+            samples: false,
             summary: Summary::default(),
             sink,
         }
@@ -93,22 +100,23 @@ impl<'a> Fitter<'a> {
         Self { listens: true, ..self }
     }
 
+    /// Curves that the program gives as such are fitted too, as the polylines that they are to a fifth of a micrometre
+    /// ([`quintic::CHORD_MM`]).
+    pub fn with_its_curves(self) -> Self {
+        Self { samples: true, ..self }
+    }
+
     /// The next item. Errors are those of the sink.
     pub fn take(&mut self, item: &Item<'_>) -> Result<(), String> {
         if let Action::Motion(Motion::Line { to }) = item.action {
-            if item.feed != self.feed || matches!(item.feed, Feed::Duration(_)) {
-                self.close()?;
-                self.feed = item.feed;
-            }
-            if self.points.is_empty() {
-                self.points.push(Vector(item.from));
-                self.line = item.line;
-            }
+            self.go_on(item, &[Vector(to)])?;
             self.summary.lines += 1;
-            if self.points.last() != Some(&Vector(to)) {
-                self.points.push(Vector(to));
-            }
             return Ok(());
+        }
+        if let (true, Action::Motion(motion)) = (self.samples, &item.action)
+            && let Some(parts) = quintic::drawn(item.from, motion).map_err(|error| error.to_string())?
+        {
+            return self.go_on(item, &quintic::polyline(&parts));
         }
         self.close()?;
         if let Action::PathMode(PathMode::Blend { tolerance: Some(tolerance), .. }) = item.action
@@ -121,6 +129,24 @@ impl<'a> Fitter<'a> {
             self.summary.other_motions += 1;
         }
         (self.sink)(Step::Kept(item))
+    }
+
+    /// Goes on to these points.
+    fn go_on(&mut self, item: &Item<'_>, points: &[Vector]) -> Result<(), String> {
+        if item.feed != self.feed || matches!(item.feed, Feed::Duration(_)) {
+            self.close()?;
+            self.feed = item.feed;
+        }
+        if self.points.is_empty() {
+            self.points.push(Vector(item.from));
+            self.line = item.line;
+        }
+        for &point in points {
+            if self.points.last().is_none_or(|&last| (point - last).norm() > SAME) {
+                self.points.push(point);
+            }
+        }
+        Ok(())
     }
 
     /// Ends the program. Errors are those of the sink.

@@ -95,7 +95,7 @@ pub struct Job {
 }
 
 impl Job {
-    /// Reads a job by its file's ending: a contour, or a program, whose lines become curves within 10 um, or within what its G64 P says.
+    /// Reads a job by its file's ending: a contour, a drawing of one contour, or a program, whose lines become curves within 10 um, or within what its G64 P says.
     /// Errors name file, line and column.
     pub fn read(name: &str) -> Result<Self, InputError> {
         if program::is_one(name) { program_file::job(name) } else { contour_file::job(open(name)?) }
@@ -167,7 +167,9 @@ impl Job {
 
     /// An error about a line of a program.
     pub fn line_error(&self, line: usize, message: impl std::fmt::Display) -> InputError {
-        InputError { position: Some((line, 1)), ..InputError::new(self.name(), message) }
+        // A drawing has no lines that a person would look for.
+        let position = (!program::is_drawing(self.name())).then_some((line, 1));
+        InputError { position, ..InputError::new(self.name(), message) }
     }
 
     /// An error about the offset distance.
@@ -228,8 +230,8 @@ fn open(name: &str) -> Result<Source, InputError> {
         _ if program::is_one(name) => program_file::source(name),
         _ => Err(InputError::new(
             name,
-            "is not a job that can be read here; give a contour in TOML (.toml), as examples/farouki2018.toml, or a program (.ngc .nc \
-             .gcode .tap .mpf .spf .apt .cls)",
+            "is not a job that can be read here; give a contour in TOML (.toml), as examples/farouki2018.toml, a program (.ngc .nc \
+             .gcode .tap .mpf .spf .apt .cls), or a drawing (.svg .dxf)",
         )),
     }
 }

@@ -11,7 +11,7 @@ use crate::fit::Kind;
 use crate::fit::contour::{Chains, only};
 use crate::fit::program::{Fitter, Step};
 use crate::input::{InputError, Source};
-use crate::program;
+use crate::program::{self, Action, Item, Motion};
 use crate::strokes::{self, Lines, Pace, Stroke, Strokes};
 use crate::units::Units;
 
@@ -23,7 +23,36 @@ pub const TOLERANCE_MM: f64 = 0.01;
 
 /// The job of a program: all that it does. Errors: those of its reader, and what the axes of a job cannot do.
 pub(super) fn job(name: &str) -> Result<Job, InputError> {
+    if program::is_drawing(name) {
+        return drawing(name);
+    }
     of_strokes(name, strokes::read(name, open(name)?, Lines::FittedAsTold(Kind::Ph, TOLERANCE_MM))?)
+}
+
+/// The job of a drawing: its one contour, which has no feed. How a tool would get from one contour to another is not in a drawing.
+fn drawing(name: &str) -> Result<Job, InputError> {
+    let mut strokes = Strokes::default();
+    let mut chains = 0;
+    let mut take = |step: Step<'_>| match step {
+        Step::Kept(Item { action: Action::Motion(Motion::Rapid { .. }), .. }) => {
+            chains += 1;
+            Ok(())
+        }
+        step if chains == 1 => strokes.take(&step),
+        _ => Ok(()),
+    };
+    let mut fitter = Fitter::new(Kind::Ph, TOLERANCE_MM, &mut take).with_its_curves();
+    program::read(name, open(name)?, &mut |item| fitter.take(item))?;
+    fitter.finish().map_err(|message| InputError::new(name, message))?;
+    if chains > 1 {
+        let message = format!(
+            "there are {chains} contours, and how a tool gets from one to another is not in a drawing; `hodograph fit` with \
+             --contour 0 to {} takes one",
+            chains - 1
+        );
+        return Err(InputError::new(name, message));
+    }
+    of_strokes(name, strokes)
 }
 
 fn open(name: &str) -> Result<BufReader<File>, InputError> {
@@ -67,7 +96,7 @@ pub(super) fn of_strokes(name: &str, Strokes { strokes, events, .. }: Strokes) -
 pub(super) fn source(name: &str) -> Result<Source, InputError> {
     let mut chains = Chains::default();
     let mut take = |step: Step<'_>| chains.take(&step).map_err(|error| error.to_string());
-    let mut fitter = Fitter::new(Kind::Ph, TOLERANCE_MM, &mut take).with_the_programs_tolerance();
+    let mut fitter = Fitter::new(Kind::Ph, TOLERANCE_MM, &mut take).with_the_programs_tolerance().with_its_curves();
     program::read(name, open(name)?, &mut |item| fitter.take(item))?;
     fitter.finish().map_err(|message| InputError::new(name, message))?;
     let text = only(&chains.chains, None).map_err(|message| InputError::new(name, message))?.to_toml();

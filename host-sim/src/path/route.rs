@@ -127,7 +127,7 @@ fn turn_of(before: Vector, after: Vector) -> f64 {
 /// The strokes of a program. Errors: one has no feed.
 fn strokes(job: &Job) -> Result<Vec<PathPiece>, InputError> {
     if let Some(stroke) = job.strokes.iter().find(|stroke| stroke.pace == Pace::Unset) {
-        let message = "it cuts, and no feed was given before; give F with a feed in units a minute, or --feed";
+        let message = "it cuts, and no feed is given for it; give one in units a minute, with F before it in a program, or with --feed";
         return Err(job.line_error(stroke.line, message));
     }
     let piece = |(number, stroke)| PathPiece::of_stroke(number, stroke, RAPID);

@@ -6,14 +6,13 @@ use shared::complex::Complex;
 use shared::curve::{Arc as Circle, Line, Segment, Spline};
 use shared::spline::CorrectionOrder;
 
-use super::quintic::{self, Quintic, quintics};
 use super::rounding::{Rounded, rounded};
 use super::{Entry, Event, Pace, Stroke, What};
 use crate::fit::{Curve, Kind, fit};
 use crate::fit::program::Step;
 use crate::height::Height;
-use crate::program::bspline::Clamped;
 use crate::program::item::{Compensation, PathMode};
+use crate::program::quintic::{self, Quintic, quintics};
 use crate::program::{Action, Arc, Feed, Item, Motion, Plane};
 use crate::vector::Vector;
 
@@ -23,10 +22,8 @@ const SHORTEST: f64 = 1e-5;
 /// Heights that are the same, in mm.
 const LEVEL: f64 = 1e-9;
 
-/// Of a curve that is fitted anew: how far its chords and then the fit may be from it, and points that are one, in mm.
-const CHORD: f64 = 2e-4;
+/// How far a curve that is fitted anew may be from its polyline, in mm.
 const ANEW: f64 = 1e-3;
-const APART: f64 = 1e-4;
 
 /// How far the centre of an arc may be moved so that both of its ends are on one circle, in mm; programs are rounded.
 const MOVED: f64 = 0.01;
@@ -117,33 +114,21 @@ impl Strokes {
                 self.arc(&arc, item.from, of);
                 Ok(())
             }
-            Motion::Bezier { points } => {
-                let all: Vec<[f64; 4]> =
-                    [item.from].iter().chain(points).map(|&[x, y, z]| [x, y, z, 1.0]).collect();
-                self.drawn(quintics(|at| quintic::rational(&all, at)), of)
-            }
-            Motion::Nurbs(nurbs) => {
-                let curve = Clamped::new(&nurbs).map_err(|error| error.to_string())?;
-                let parts = curve.pieces().flat_map(|piece| quintics(|at| quintic::rational(&piece, at)));
-                self.drawn(parts.collect(), of)
+            Motion::Bezier { .. } | Motion::Nurbs(_) => {
+                let parts = quintic::drawn(item.from, motion).map_err(|error| error.to_string())?;
+                self.drawn(&parts.unwrap_or_default(), of)
             }
         }
     }
 
-    /// A curve that the program gives as such. Where its points all but stand still, as control points that coincide make them, no feed can be
-    /// kept: there the curve is fitted anew.
-    fn drawn(&mut self, parts: Vec<Quintic>, of: Of) -> Result<(), String> {
+    /// A curve that the program gives as such. Where it all but stands still, as control points that coincide make it, no feed can be kept: it
+    /// is fitted anew.
+    fn drawn(&mut self, parts: &[Quintic], of: Of) -> Result<(), String> {
         if parts.iter().all(quintic::is_lively) {
-            self.quintics(&parts, of);
+            self.quintics(parts, of);
             return Ok(());
         }
-        let mut points: Vec<Vector> = Vec::new();
-        for point in parts.iter().flat_map(|part| quintic::samples(part, CHORD)) {
-            if points.last().is_none_or(|&last| (point - last).norm() > APART) {
-                points.push(point);
-            }
-        }
-        let fit = fit(&points, Kind::Ph, ANEW);
+        let fit = fit(&quintic::polyline(parts), Kind::Ph, ANEW);
         fit.parts.iter().try_for_each(|part| self.curve(&part.curve, of))
     }
 

@@ -2,14 +2,13 @@
 //!
 //! Each motion of a program, or each curve that stands for its lines, is a *stroke*: a segment in the plane, how z goes along it, and how
 //! fast. Lines, arcs and PH curves are kept as they are; z rises evenly along them. Whatever else bends (G5, NURBS, arcs that stand upright, curves
-//! of relief) becomes polynomial quintics ([`quintic`]) in space.
+//! of relief) becomes polynomial quintics ([`crate::program::quintic`]) in space.
 //!
 //! Strokes follow each other without a gap: where the length of the tool changes (G43, G49) its tip is elsewhere at once, but no axis
 //! moves. So what follows is shifted by as much, and z of the path is that of the tool as it was measured when the program began.
 
 mod builder;
 mod event;
-pub mod quintic;
 mod read;
 pub mod rounding;
 

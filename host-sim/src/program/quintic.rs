@@ -4,11 +4,18 @@
 //! other curves are halved until they are within [`TOLERANCE_MM`]. All parts of a curve have the derivatives by its own parameter in common, so
 //! that direction and curvature go on at their ends.
 
-use crate::program::Arc;
+use super::bspline::{Clamped, NoCurve};
+use super::{Arc, Motion};
 use crate::vector::Vector;
 
 /// How far a quintic may be from the curve it stands for, in mm: a tenth of a micrometre.
 pub const TOLERANCE_MM: f64 = 1e-4;
+
+/// How far the chords of a polyline are from its curve, in mm.
+pub const CHORD_MM: f64 = 2e-4;
+
+/// Points that are one, in mm.
+const APART_MM: f64 = 1e-4;
 
 /// How often a curve is halved at the most.
 const HALVINGS: u32 = 12;
@@ -56,6 +63,32 @@ pub fn point(quintic: &Quintic, at: f64) -> Vector {
     casteljau(quintic.to_vec(), at)[0]
 }
 
+/// The quintics of a curve that a program or a drawing gives as such; none of a motion that is no such curve. Errors: it is none at all.
+pub fn drawn(from: [f64; 3], motion: &Motion<'_>) -> Result<Option<Vec<Quintic>>, NoCurve> {
+    Ok(match *motion {
+        Motion::Bezier { points } => {
+            let all: Vec<[f64; 4]> = [from].iter().chain(points).map(|&[x, y, z]| [x, y, z, 1.0]).collect();
+            Some(quintics(|at| rational(&all, at)))
+        }
+        Motion::Nurbs(nurbs) => {
+            let curve = Clamped::new(&nurbs)?;
+            Some(curve.pieces().flat_map(|piece| quintics(|at| rational(&piece, at))).collect())
+        }
+        Motion::Rapid { .. } | Motion::Line { .. } | Motion::Arc(_) => None,
+    })
+}
+
+/// Points of curves that follow each other, without repetition, whose chords are within [`CHORD_MM`] of them.
+pub fn polyline(parts: &[Quintic]) -> Vec<Vector> {
+    let mut points: Vec<Vector> = Vec::new();
+    for point in parts.iter().flat_map(|part| samples(part, CHORD_MM)) {
+        if points.last().is_none_or(|&last| (point - last).norm() > APART_MM) {
+            points.push(point);
+        }
+    }
+    points
+}
+
 /// Whether it is passed at a speed by its parameter that nowhere comes near to none: to a hundredth of its mean.
 pub fn is_lively(quintic: &Quintic) -> bool {
     const LOOKS: u32 = 32;
@@ -66,7 +99,7 @@ pub fn is_lively(quintic: &Quintic) -> bool {
 }
 
 /// Points on it, both ends among them, whose chords are about so near to it, in mm.
-pub fn samples(quintic: &Quintic, chord: f64) -> impl Iterator<Item = Vector> {
+fn samples(quintic: &Quintic, chord: f64) -> impl Iterator<Item = Vector> {
     let bends = quintic.windows(3).map(|w| (w[0] - w[1] * 2.0 + w[2]).norm() * 20.0);
     // A chord over h is off by |r''| h^2/8.
     let count = (bends.fold(0.0, f64::max) / (8.0 * chord)).sqrt().ceil().clamp(8.0, 4096.0);
