@@ -41,25 +41,41 @@ fn the_example_becomes_a_contour_that_runs() {
         at = Some(next);
     }
     assert!((length / lines - 1.0).abs() < 1e-3, "{length} {lines}");
-    // The program itself is the same job.
-    let direct = found(&run("simulate", &program, &["--json", "-"]));
-    assert_eq!(direct["setpoint_hash"], simulated["setpoint_hash"]);
+    // The program itself is all of its motions, those in the air too.
+    let whole = found(&run("simulate", &program, &["--json", "-"]))["contact_length"].as_f64().unwrap();
+    let (mut at, mut motions) = ([0.0_f64; 3], 0.0);
+    for line in HEART.lines().filter(|line| !line.starts_with('(')) {
+        let mut next = at;
+        for (coordinate, letter) in next.iter_mut().zip(['X', 'Y', 'Z']) {
+            if let Some(text) = line.split(letter).nth(1) {
+                *coordinate = text.split(' ').next().unwrap().parse().unwrap();
+            }
+        }
+        motions += (0..3).map(|axis| (next[axis] - at[axis]).powi(2)).sum::<f64>().sqrt();
+        at = next;
+    }
+    assert!((whole / motions - 1.0).abs() < 1e-3 && whole > length + 10.0, "{whole} {motions}");
 }
 
-/// G64 P of a program is its tolerance: a tighter one keeps nearer to the lines, so it needs more pieces. A program of two contours is none.
+/// G64 P of a program is its tolerance: a tighter one keeps nearer to the lines, so it needs more pieces. A program may hold
+/// several contours, and a cut without a feed is told with its line.
 #[test]
 fn a_program_is_a_job() {
     let pieces = |name: &str, tolerance: &str| {
         let program = file(name, &HEART.replace("G90 G17", &format!("G90 G17 G64 P{tolerance}")));
         let machine = concat!(env!("CARGO_MANIFEST_DIR"), "/../examples/machine.toml");
-        let options = ["--machine", machine, "--zero", "200,200", "--json", "-"];
+        let options = ["--machine", machine, "--zero", "200,200,-20", "--json", "-"];
         found(&run("plan", &program, &options))["pieces"].as_u64().unwrap()
     };
     assert!(pieces("job-tight.ngc", "0.002") > pieces("job-loose.ngc", "0.05"));
     let two = file("job-two.ngc", "G21 F100\nG1 X10\nG0 X20\nG1 Y10\n");
-    let output = run("simulate", &two, &[]);
+    let length = found(&run("simulate", &two, &["--json", "-"]))["contact_length"].as_f64().unwrap();
+    assert!((length - 30.0).abs() < 1e-6, "{length}");
+    let slow = file("job-slow.ngc", "G21\nG1 X10\n");
+    let output = run("simulate", &slow, &[]);
     assert_eq!(output.status.code(), Some(2));
-    says("two", &String::from_utf8(output.stderr).unwrap(), &["job-two.ngc", "2 contours", "hodograph fit"]);
+    says("slow", &String::from_utf8(output.stderr).unwrap(), &["job-slow.ngc:2:", "feed", "--feed"]);
+    assert!(run("simulate", &slow, &["--feed", "600"]).status.success());
 }
 
 /// What is written is read back: the same number of curves from it, none of them fitted again, and no less smooth.
