@@ -14,7 +14,7 @@ pub struct Joins {
 }
 
 /// A curvature that counts as this much at least, in 1/mm: 1 m of radius is straight.
-const STRAIGHT: f64 = 1e-3;
+pub(super) const STRAIGHT: f64 = 1e-3;
 
 /// Measures all joins but those at corners.
 pub fn joins(parts: &[Part]) -> Joins {

@@ -10,7 +10,7 @@
 //! | `tangent` | its tangent at a vertex |
 //! | `conditions` | both conditions on a curve (SA 1, SA 2), as an upper bound |
 //! | `piecewise` | cubics with common tangents, as published |
-//! | `polyline`, `band` | a polyline by the way along it; least squares of splines |
+//! | `polyline`, `spans`, `band` | a polyline by the way along it; least squares of splines |
 //! | [`bspline`] | cubic B-splines with continuous curvature (SA 5) |
 //! | [`ph`] | PH quintics with continuous curvature |
 //! | [`joins`] | how smoothly one curve goes on to the next |
@@ -28,6 +28,7 @@ pub mod ph;
 mod piecewise;
 mod polyline;
 pub mod program;
+mod spans;
 mod tangent;
 pub mod vector;
 
@@ -38,7 +39,7 @@ use corners::Vertex;
 use curve::{Bezier, Cubic};
 use ph::RisingPh;
 use polyline::Polyline;
-use vector::Vector;
+use vector::{Chord, Vector};
 
 /// What is laid through a polyline.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -105,6 +106,19 @@ pub fn fit(points: &[Vector], kind: Kind, tolerance: f64) -> Fit {
     found
 }
 
+/// How far points are from the segment between the first and the last of them, where that is within the tolerance.
+fn from_chord(run: &[Vector], tolerance: f64) -> Option<f64> {
+    let chord = Chord::new(run[0], run[run.len() - 1]);
+    let mut worst = 0.0_f64;
+    for &point in run {
+        worst = worst.max(chord.square_from(point));
+        if worst > tolerance * tolerance {
+            return None;
+        }
+    }
+    Some(worst.sqrt())
+}
+
 /// Fits the vertices between two corners. Where a vertex turns out to be a corner, both sides of it; where more curves than lines would be
 /// needed, the lines stay.
 fn smooth(points: &[Vector], ends: [usize; 2], kind: Kind, tolerance: f64, found: &mut Fit) {
@@ -112,8 +126,7 @@ fn smooth(points: &[Vector], ends: [usize; 2], kind: Kind, tolerance: f64, found
     while let Some([from, to]) = open.pop() {
         let run = &points[from..=to];
         let ends = [run[0], run[run.len() - 1]];
-        let deviation = run.iter().map(|point| point.from_segment(ends[0], ends[1])).fold(0.0, f64::max);
-        if deviation <= tolerance {
+        if let Some(deviation) = from_chord(run, tolerance) {
             let curve = Curve::Line(Bezier { points: ends });
             found.parts.push(Part { curve, vertices: [from, to], deviation, is_smooth: false });
             continue;
@@ -123,15 +136,15 @@ fn smooth(points: &[Vector], ends: [usize; 2], kind: Kind, tolerance: f64, found
         let corner = if kind == Kind::Ph {
             ph::fit(&line, from, tolerance, &mut found.parts)
         } else {
-            bspline::fit(&line, tolerance).map(|(spline, deviations)| {
-                let spans = spline.breaks().windows(2).zip(deviations).enumerate();
-                found.parts.extend(spans.map(|(k, (ways, deviation))| {
+            bspline::fit(&line, tolerance).map(|fitted| {
+                found.parts.extend(fitted.spans.iter().zip(&fitted.curves).enumerate().map(|(k, (span, curve))| {
                     let vertex = |way: f64, is_end: bool| from + line.segment(way) + usize::from(is_end);
-                    let is_last = ways[1] >= line.length();
-                    let vertices = [vertex(ways[0], false), vertex(ways[1], is_last)];
-                    Part { curve: Curve::Cubic(spline.span(k)), vertices, deviation, is_smooth: k > 0 }
+                    let [start, end] = span.ends;
+                    let vertices = [vertex(start, false), vertex(end, end >= line.length())];
+                    let (curve, deviation) = (Curve::Cubic(*curve), span.deviation);
+                    Part { curve, vertices, deviation, is_smooth: k > 0 }
                 }));
-                found.splines.push((first..found.parts.len(), spline));
+                found.splines.push((first..found.parts.len(), fitted.spline));
             })
         };
         if let Err(corner) = corner {

@@ -30,7 +30,11 @@ impl<'a> Polyline<'a> {
     }
 
     pub(super) fn at(&self, way: f64) -> Vector {
-        let k = self.segment(way);
+        self.on(self.segment(way), way)
+    }
+
+    /// As [`Polyline::at`], on segment `k`.
+    pub(super) fn on(&self, k: usize, way: f64) -> Vector {
         let step = self.ways[k + 1] - self.ways[k];
         self.points[k].toward(self.points[k + 1], ((way - self.ways[k]) / step).clamp(0.0, 1.0))
     }
