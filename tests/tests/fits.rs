@@ -14,7 +14,7 @@ use kurbo::simplify::{SimplifyOptLevel, SimplifyOptions, simplify_bezpath};
 use tests::random::Random;
 use tests::two_sided::two_sided;
 
-const KINDS: [Kind; 3] = [Kind::Bezier, Kind::Bspline, Kind::Ph];
+const KINDS: [Kind; 5] = [Kind::Bezier, Kind::Bspline, Kind::Ph, Kind::PhC2, Kind::Arcs];
 
 /// What samples may be above a tolerance, in mm: they have rounding of their own.
 const ROUNDING: f64 = 1e-9;
@@ -39,7 +39,10 @@ fn measured(what: &str, points: &[Vector], kind: Kind, tolerance: f64) -> usize 
     }
     let Joins { tangent, curvature } = joins(&parts);
     assert!(tangent < SMOOTH, "{what}, {kind:?}: tangent break {tangent}");
-    assert!(kind == Kind::Bezier || curvature < SMOOTH, "{what}, {kind:?}: curvature jump {curvature}");
+    assert!(
+        matches!(kind, Kind::Bezier | Kind::Arcs) || curvature < SMOOTH,
+        "{what}, {kind:?}: curvature jump {curvature}"
+    );
     parts.len()
 }
 
@@ -53,7 +56,7 @@ fn a_circle_of_many_lines_is_few_curves() {
     let on = |k: u32| f64::from(k) * std::f64::consts::TAU / 10_000.0;
     let points: Vec<Vector> =
         (0..=10_000).map(|k| Vector([rounded(25.4 * on(k).sin()), rounded(25.4 * on(k).cos()), 2.0])).collect();
-    for (kind, most) in [(Kind::Bezier, 16), (Kind::Bspline, 32), (Kind::Ph, 16)] {
+    for (kind, most) in [(Kind::Bezier, 16), (Kind::Bspline, 32), (Kind::Ph, 16), (Kind::PhC2, 32), (Kind::Arcs, 1)] {
         let count = measured("circle", &points, kind, 0.01);
         println!("circle of 10 000 lines: {count} of {kind:?}");
         assert!(count <= most, "{count}");
@@ -193,19 +196,22 @@ fn programs_are_fitted_within_tolerance() {
         let chains = chains(file);
         let lines: usize = chains.iter().map(|chain| chain.len() - 1).sum();
         for tolerance in [0.001, 0.01, 0.1] {
-            let [bezier, bspline, ph] =
+            let [bezier, bspline, ph, c2, arcs] =
                 KINDS.map(|kind| chains.iter().map(|chain| measured(&name, chain, kind, tolerance)).sum::<usize>());
             if tolerance != 0.01 || lines == 0 {
                 continue;
             }
             let is_flat = chains.iter().all(|chain| chain.iter().all(|point| point.0[2] == chain[0].0[2]));
             let theirs = is_flat.then(|| kurbo(&chains, tolerance));
-            println!("{name:42} {lines:6} lines; {bezier:6} Bezier {bspline:6} B-spline {ph:6} PH, kurbo {theirs:?}");
+            println!(
+                "{name:42} {lines:6} lines; {bezier:6} Bezier {bspline:6} B-spline {ph:6} PH {c2:6} C2 PH {arcs:6} arcs, kurbo {theirs:?}"
+            );
             if let Some(theirs) = theirs {
                 assert!(ph <= theirs, "{name}: {ph} PH, {theirs} of kurbo");
             }
             if name.starts_with("lcnc_circle_small_segments") {
-                assert!(ph <= 16, "{ph}");
+                // The line to the circle, and the circle.
+                assert!(ph <= 16 && arcs == 2, "{ph} {arcs}");
             }
         }
     }

@@ -5,8 +5,7 @@
 //! again, until none does.
 
 use super::band::Band;
-use super::conditions::walk;
-use super::curve::{Bezier, Cubic};
+use super::curve::{Cubic, Local};
 use super::polyline::Polyline;
 use super::spans::{LOOKS, Span, bernstein, parts, place};
 use super::vector::Vector;
@@ -44,6 +43,19 @@ pub(super) struct Fitted {
 }
 
 impl Fitted {
+    /// Where the spline is at a way; derivatives are by the way.
+    pub(super) fn at(&self, way: f64) -> Local {
+        self.on(self.spans.partition_point(|span| span.ends[0] <= way).max(1) - 1, way)
+    }
+
+    /// As [`Fitted::at`], on the span of that number.
+    pub(super) fn on(&self, number: usize, way: f64) -> Local {
+        let [from, to] = self.spans[number].ends;
+        let inverse = 1.0 / (to - from);
+        let local = self.curves[number].at(((way - from) * inverse).clamp(0.0, 1.0));
+        Local { first: local.first * inverse, second: local.second * (inverse * inverse), ..local }
+    }
+
     /// The way at which it is slowest, where it is slower than [`STANDING`] at one of some looked at: 1 is where it goes as far as its
     /// parameter.
     fn standing(&self) -> Option<f64> {
@@ -132,27 +144,4 @@ fn least_squares(line: &Polyline<'_>, spans: &mut [Span], tolerance: f64, scratc
         span.take(line, bernstein(&points[k..k + 4], parts), tolerance, scratch);
     }
     Some(Bspline { knots, points })
-}
-
-/// How far a curve and the polyline between two ways are apart; infinite where it is more than the tolerance.
-pub(super) fn across<const N: usize>(
-    line: &Polyline<'_>,
-    curve: &Bezier<N>,
-    ways: [f64; 2],
-    tolerance: f64,
-    feet: &mut Vec<f64>,
-) -> f64 {
-    // The ends of the curve stand for the points of the polyline that are nearest to them, on their segments.
-    let ends = [(ways[0], curve.points[0]), (ways[1], curve.points[N - 1])].map(|(way, end)| {
-        let k = line.segment(way);
-        let along = line.points[k + 1] - line.points[k];
-        let part = ((end - line.points[k]).dot(along) / along.dot(along)).clamp(0.0, 1.0);
-        (line.ways[k] + part * (line.ways[k + 1] - line.ways[k]), line.points[k].toward(line.points[k + 1], part))
-    });
-    let vertices = line.between(ends[0].0, ends[1].0);
-    let inverse = 1.0 / (ends[1].0 - ends[0].0);
-    feet.clear();
-    feet.extend(line.ways[vertices.clone()].iter().map(|way| (way - ends[0].0) * inverse));
-    let ends = ends.map(|(_, point)| point);
-    walk(curve, ends, &line.points[vertices], feet, tolerance, tolerance).map_or(f64::INFINITY, |walk| walk.deviation)
 }

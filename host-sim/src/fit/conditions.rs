@@ -10,7 +10,47 @@
 //! control points, and is halved until that is near enough.
 
 use super::curve::{Bezier, Local, Powers};
+use super::polyline::Polyline;
 use super::vector::{Chord, Vector};
+
+/// A curve that can be walked along, over 0..=1.
+pub(super) trait Course {
+    /// Where it is.
+    fn at(&self, t: f64) -> Local;
+
+    /// What its second derivative is nowhere longer than.
+    fn bend(&self) -> f64;
+
+    /// How far it is from a segment at the most between two parameters; where that is not within the tolerance, something above it.
+    fn hull(&self, from: f64, to: f64, chord: &Chord, tolerance: f64) -> f64;
+}
+
+/// A polynomial curve, ready to be walked along.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Polynomial<'a, const N: usize> {
+    curve: &'a Bezier<N>,
+    powers: Powers<N>,
+}
+
+impl<'a, const N: usize> Polynomial<'a, N> {
+    pub(super) fn new(curve: &'a Bezier<N>) -> Self {
+        Self { curve, powers: curve.powers() }
+    }
+}
+
+impl<const N: usize> Course for Polynomial<'_, N> {
+    fn at(&self, t: f64) -> Local {
+        self.powers.at(t)
+    }
+
+    fn bend(&self) -> f64 {
+        self.curve.bend()
+    }
+
+    fn hull(&self, from: f64, to: f64, chord: &Chord, tolerance: f64) -> f64 {
+        hull(&self.curve.part(from, to), chord, tolerance, HALVINGS)
+    }
+}
 
 /// What a walk along curve and polyline found.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,7 +68,7 @@ const STEPS: usize = 3;
 const STILL: f64 = 0.005;
 
 /// A curve leaves its chord by no more than this part of its largest second derivative.
-const SAG: f64 = 0.125;
+pub(super) const SAG: f64 = 0.125;
 
 /// How often a piece of a curve is halved where its hull is too far from its segment.
 const HALVINGS: u32 = 4;
@@ -39,8 +79,8 @@ const PROBES: u32 = 4;
 
 /// Walks along a curve and the polyline from one of `ends` over `inner` to the other, whose ends stand for its ends. `feet` are guesses of the
 /// foot points of `inner` from 0 to 1, which are improved. None as soon as something is farther off than `most`.
-pub(super) fn walk<const N: usize>(
-    curve: &Bezier<N>,
+pub(super) fn walk(
+    curve: &impl Course,
     ends: [Vector; 2],
     inner: &[Vector],
     feet: &mut [f64],
@@ -48,14 +88,13 @@ pub(super) fn walk<const N: usize>(
     most: f64,
 ) -> Option<Walk> {
     let still = STILL * tolerance;
-    let powers = curve.powers();
     for probe in 1..=PROBES {
         let stride = inner.len() >> probe;
         if stride < 4 {
             break;
         }
         for k in (stride..inner.len()).step_by(2 * stride) {
-            let (foot, off) = foot(&powers, inner[k], feet[k], still);
+            let (foot, off) = foot(curve, inner[k], feet[k], still);
             feet[k] = foot;
             if off > most {
                 return None;
@@ -63,16 +102,16 @@ pub(super) fn walk<const N: usize>(
         }
     }
     let sag = SAG * curve.bend();
-    let [start, end] = [(curve.points[0] - ends[0]).norm(), (curve.points[N - 1] - ends[1]).norm()];
+    let [start, end] = [(0.0, ends[0]), (1.0, ends[1])].map(|(t, end)| (curve.at(t).point - end).norm());
     let mut found = Walk { deviation: start.max(end), vertices: start.max(end) };
     let (mut before, mut behind, mut distance) = (ends[0], 0.0, start);
     let last = (ends[1], 1.0, end);
     for k in 0..=inner.len() {
         let (point, t, off) = match inner.get(k) {
             Some(&point) => {
-                let (mut t, mut off) = foot(&powers, point, feet[k], still);
+                let (mut t, mut off) = foot(curve, point, feet[k], still);
                 if t < behind {
-                    (t, off) = (behind, (powers.at(behind).point - point).norm());
+                    (t, off) = (behind, (curve.at(behind).point - point).norm());
                 }
                 feet[k] = t;
                 (point, t, off)
@@ -87,12 +126,8 @@ pub(super) fn walk<const N: usize>(
             near.min(tolerance)
         } else {
             let chord = Chord::new(before, point);
-            let middle = chord.square_from(powers.at(0.5 * (behind + t)).point);
-            if middle > tolerance * tolerance {
-                middle.sqrt()
-            } else {
-                hull(&curve.part(behind, t), &chord, tolerance, HALVINGS)
-            }
+            let middle = chord.square_from(curve.at(0.5 * (behind + t)).point);
+            if middle > tolerance * tolerance { middle.sqrt() } else { curve.hull(behind, t, &chord, tolerance) }
         };
         found.deviation = found.deviation.max(bound).max(off);
         if found.deviation > most {
@@ -103,8 +138,31 @@ pub(super) fn walk<const N: usize>(
     Some(found)
 }
 
+/// How far a curve and the polyline between two ways are apart; infinite where it is more than the tolerance.
+pub(super) fn across(
+    line: &Polyline<'_>,
+    curve: &impl Course,
+    ways: [f64; 2],
+    tolerance: f64,
+    feet: &mut Vec<f64>,
+) -> f64 {
+    // The ends of the curve stand for the points of the polyline that are nearest to them, on their segments.
+    let ends = [(ways[0], curve.at(0.0).point), (ways[1], curve.at(1.0).point)].map(|(way, end)| {
+        let k = line.segment(way);
+        let along = line.points[k + 1] - line.points[k];
+        let part = ((end - line.points[k]).dot(along) / along.dot(along)).clamp(0.0, 1.0);
+        (line.ways[k] + part * (line.ways[k + 1] - line.ways[k]), line.points[k].toward(line.points[k + 1], part))
+    });
+    let vertices = line.between(ends[0].0, ends[1].0);
+    let inverse = 1.0 / (ends[1].0 - ends[0].0);
+    feet.clear();
+    feet.extend(line.ways[vertices.clone()].iter().map(|way| (way - ends[0].0) * inverse));
+    let ends = ends.map(|(_, point)| point);
+    walk(curve, ends, &line.points[vertices], feet, tolerance, tolerance).map_or(f64::INFINITY, |walk| walk.deviation)
+}
+
 /// The parameter nearest to a point, from a guess, and how far it is.
-fn foot<const N: usize>(curve: &Powers<N>, point: Vector, guess: f64, still: f64) -> (f64, f64) {
+fn foot(curve: &impl Course, point: Vector, guess: f64, still: f64) -> (f64, f64) {
     let mut t = guess;
     let mut off = Vector::default();
     for step in 0..=STEPS {

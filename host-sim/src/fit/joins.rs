@@ -46,6 +46,7 @@ impl Curve {
             Self::Line(line) => line.at(t),
             Self::Cubic(cubic) => Bezier::at(cubic, t),
             Self::Ph(ph) => ph.bezier().at(t),
+            Self::Arc(arc) => arc.at(t),
         }
     }
 }

@@ -10,15 +10,20 @@
 //! | `tangent` | its tangent at a vertex |
 //! | `conditions` | both conditions on a curve (SA 1, SA 2), as an upper bound |
 //! | `piecewise` | cubics with common tangents, as published |
+//! | [`arc`], `arcs` | circular arcs, for comparison |
 //! | `polyline`, `spans`, `band` | a polyline by the way along it; least squares of splines |
 //! | [`bspline`] | cubic B-splines with continuous curvature (SA 5) |
 //! | [`ph`] | PH quintics with continuous curvature |
+//! | [`c2`] | PH quintics with two continuous derivatives |
 //! | [`joins`] | how smoothly one curve goes on to the next |
 //! | [`contour`] | the result in the contour form |
 //! | [`program`] | all of that for the lines of a program |
 
+pub mod arc;
+mod arcs;
 mod band;
 pub mod bspline;
+pub mod c2;
 mod conditions;
 pub mod contour;
 mod corners;
@@ -34,6 +39,7 @@ pub mod vector;
 
 use std::ops::Range;
 
+use arc::RisingArc;
 use bspline::Bspline;
 use corners::Vertex;
 use curve::{Bezier, Cubic};
@@ -50,6 +56,10 @@ pub enum Kind {
     Bspline,
     /// PH quintics with continuous curvature in x and y, along which z goes; cubic B-splines where the way is straight up or down.
     Ph,
+    /// As [`Kind::Ph`], with two continuous derivatives between two corners.
+    PhC2,
+    /// Lines and circular arcs, continuous in direction where no corner is; z goes along evenly.
+    Arcs,
 }
 
 /// One curve of a fit.
@@ -61,6 +71,8 @@ pub enum Curve {
     Cubic(Cubic),
     /// A PH quintic.
     Ph(RisingPh),
+    /// A circular arc or a part of a helix.
+    Arc(RisingArc),
 }
 
 /// A part of a fit.
@@ -72,7 +84,7 @@ pub struct Part {
     pub vertices: [usize; 2],
     /// An upper bound of how far curve and polyline are apart anywhere, in mm.
     pub deviation: f64,
-    /// Whether it goes on smoothly from the part before it: in direction, and but for [`Kind::Bezier`] in curvature.
+    /// Whether it goes on smoothly from the part before it: in direction, and but for [`Kind::Bezier`] and [`Kind::Arcs`] in curvature.
     pub is_smooth: bool,
 }
 
@@ -95,6 +107,10 @@ pub fn fit(points: &[Vector], kind: Kind, tolerance: f64) -> Fit {
     }
     if kind == Kind::Bezier {
         found.parts = piecewise::fit(points, tolerance);
+        return found;
+    }
+    if kind == Kind::Arcs {
+        found.parts = arcs::fit(points, tolerance);
         return found;
     }
     let kinds = corners::vertices(points, tolerance);
@@ -135,6 +151,8 @@ fn smooth(points: &[Vector], ends: [usize; 2], kind: Kind, tolerance: f64, found
         let first = found.parts.len();
         let corner = if kind == Kind::Ph {
             ph::fit(&line, from, tolerance, &mut found.parts)
+        } else if kind == Kind::PhC2 {
+            c2::fit(&line, from, tolerance, &mut found.parts)
         } else {
             bspline::fit(&line, tolerance).map(|fitted| {
                 found.parts.extend(fitted.spans.iter().zip(&fitted.curves).enumerate().map(|(k, (span, curve))| {

@@ -8,7 +8,8 @@
 use shared::complex::Complex;
 use shared::curve::PhQuintic;
 
-use super::bspline::{self, Fitted, across};
+use super::bspline::{self, Fitted};
+use super::conditions::{Polynomial, across};
 use super::curve::{Bezier, Local};
 use super::joins::STRAIGHT;
 use super::piecewise::longest;
@@ -57,7 +58,7 @@ const STEEP: f64 = 0.02;
 
 impl Node {
     /// None where the way goes straight up or down. Derivatives are by the way along the polyline.
-    fn of(at: &Local) -> Option<Self> {
+    pub(super) fn of(at: &Local) -> Option<Self> {
         let flat = |v: Vector| Complex::new(v.0[0], v.0[1]);
         let (first, second) = (flat(at.first), flat(at.second));
         let speed = first.norm();
@@ -73,7 +74,7 @@ impl Node {
 }
 
 /// z over the parameter of a curve, so that it and two derivatives by the way are those of the nodes.
-fn rise(plane: &PhQuintic<f64>, from: &Node, to: &Node) -> [f64; 6] {
+pub(super) fn rise(plane: &PhQuintic<f64>, from: &Node, to: &Node) -> [f64; 6] {
     let sigma = plane.speed_coefficients();
     // By the parameter: z' = z_s sigma, z'' = z_ss sigma^2 + z_s sigma'.
     let by_parameter = |[_, slope, bend]: [f64; 3], sigma: f64, change: f64| {
@@ -93,16 +94,6 @@ struct Place {
     span: usize,
 }
 
-impl Place {
-    /// Where the spline is there.
-    fn on(&self, fitted: &Fitted) -> Local {
-        let span = &fitted.spans[self.span];
-        let inverse = 1.0 / (span.ends[1] - span.ends[0]);
-        let local = fitted.curves[self.span].at(((self.way - span.ends[0]) * inverse).clamp(0.0, 1.0));
-        Local { first: local.first * inverse, second: local.second * (inverse * inverse), ..local }
-    }
-}
-
 /// Fits a run of at least two points. Where no PH quintic follows, and where the way goes straight up or down, the cubics of the B-spline
 /// stay, which share point, tangent and curvature with it. The error is as that of [`bspline::fit`].
 pub(super) fn fit(line: &Polyline<'_>, first: usize, tolerance: f64, parts: &mut Vec<Part>) -> Result<(), usize> {
@@ -110,7 +101,8 @@ pub(super) fn fit(line: &Polyline<'_>, first: usize, tolerance: f64, parts: &mut
     let places = candidates(line, &fitted);
     let last = places.len() - 1;
     let node = |number: usize| {
-        let local = places[number].on(&fitted);
+        let Place { way, span } = places[number];
+        let local = fitted.on(span, way);
         Node::of(&local).map(|node| (node, local))
     };
     let (mut from, mut guess) = (0, 8);
@@ -168,7 +160,7 @@ fn between(
     let plane = hermite(&start.0, &end.0)?;
     let curve = RisingPh { plane, z: rise(&plane, &start.0, &end.0) };
     let bezier = curve.bezier();
-    let deviation = across(line, &bezier, ways, tolerance, scratch);
+    let deviation = across(line, &Polynomial::new(&bezier), ways, tolerance, scratch);
     if deviation > tolerance || deviation.is_nan() {
         return None;
     }

@@ -3,7 +3,7 @@
 //! The ends of each cubic are vertices of the polyline, its end tangents those of the polyline there, and the lengths of its handles come from
 //! least squares. Each takes as many vertices as both conditions allow. What is straight (SA 3) stays a line.
 
-use super::conditions::{Walk, walk};
+use super::conditions::{Polynomial, Walk, walk};
 use super::corners::{Vertex, vertices};
 use super::curve::{Bezier, Cubic};
 use super::polyline::Polyline;
@@ -31,6 +31,11 @@ const TANGENT: f64 = 0.25;
 
 /// Fits a polyline of at least two points, none repeated.
 pub(super) fn fit(points: &[Vector], tolerance: f64) -> Vec<Part> {
+    by_runs(points, tolerance, &mut |run, parts| run.fit(parts))
+}
+
+/// Fits what is curved by `fit`; what is straight (SA 3) stays a line.
+pub(super) fn by_runs(points: &[Vector], tolerance: f64, fit: &mut impl FnMut(&Run<'_>, &mut Vec<Part>)) -> Vec<Part> {
     let kinds = vertices(points, tolerance);
     let mut parts = Vec::new();
     let mut from = 0;
@@ -38,7 +43,7 @@ pub(super) fn fit(points: &[Vector], tolerance: f64) -> Vec<Part> {
         if is_straight(&kinds, from) {
             let vertices = [from, from + 1];
             // Behind a curve that ends along it.
-            let behind_curve = matches!(parts.last(), Some(Part { curve: Curve::Cubic(_), .. }));
+            let behind_curve = parts.last().is_some_and(|part: &Part| !matches!(part.curve, Curve::Line(_)));
             let is_smooth = behind_curve && kinds[from] == Vertex::Tangent { before: false };
             parts.push(Part { curve: line(points, from, from + 1), vertices, deviation: 0.0, is_smooth });
             from += 1;
@@ -47,7 +52,7 @@ pub(super) fn fit(points: &[Vector], tolerance: f64) -> Vec<Part> {
         // Up to where something straight begins, or a corner is.
         let ends = |k: &usize| kinds[*k] != Vertex::Smooth || is_straight(&kinds, *k);
         let to = (from + 1..points.len()).find(ends).unwrap_or(points.len() - 1);
-        Run::new(points, &kinds, [from, to], tolerance).fit(&mut parts);
+        fit(&Run::new(points, &kinds, [from, to], tolerance), &mut parts);
         from = to;
     }
     parts
@@ -66,13 +71,13 @@ fn line(points: &[Vector], from: usize, to: usize) -> Curve {
 }
 
 /// Vertices that lie on a curve.
-struct Run<'a> {
-    line: Polyline<'a>,
+pub(super) struct Run<'a> {
+    pub line: Polyline<'a>,
     /// The number of the first of them.
-    first: usize,
+    pub first: usize,
     /// The directions that a straight neighbour gives to the ends.
-    given: [Option<Vector>; 2],
-    tolerance: f64,
+    pub given: [Option<Vector>; 2],
+    pub tolerance: f64,
 }
 
 impl<'a> Run<'a> {
@@ -85,7 +90,13 @@ impl<'a> Run<'a> {
         Self { line: Polyline::new(&all[from..=to]), first: from, given: [start, end], tolerance }
     }
 
-    fn tangent(&self, k: usize) -> Option<Vector> {
+    /// The polyline's segment behind one of them.
+    pub(super) fn segment(&self, k: usize) -> Curve {
+        line(self.line.points, k, k + 1)
+    }
+
+    /// The direction at one of them.
+    pub(super) fn tangent(&self, k: usize) -> Option<Vector> {
         let last = self.line.points.len() - 1;
         let given = if k == 0 {
             self.given[0]
@@ -119,7 +130,7 @@ impl<'a> Run<'a> {
                 }
                 None => {
                     let vertices = [self.first + from, self.first + from + 1];
-                    let curve = line(self.line.points, from, from + 1);
+                    let curve = self.segment(from);
                     parts.push(Part { curve, vertices, deviation: 0.0, is_smooth: false });
                     (start, is_smooth) = (self.tangent(from + 1), false);
                     from + 1
@@ -191,7 +202,7 @@ fn cubic(
     let mut before = f64::INFINITY;
     for round in 0..ROUNDS {
         let curve = handles(ends, inner, tangents, feet)?;
-        let walk = walk(&curve, ends, inner, feet, tolerance, HOPE * tolerance)?;
+        let walk = walk(&Polynomial::new(&curve), ends, inner, feet, tolerance, HOPE * tolerance)?;
         if walk.deviation <= tolerance {
             return Some((curve, walk));
         }

@@ -29,11 +29,7 @@ impl<'a> Polyline<'a> {
         self.ways.partition_point(|&at| at <= way).clamp(1, self.points.len() - 1) - 1
     }
 
-    pub(super) fn at(&self, way: f64) -> Vector {
-        self.on(self.segment(way), way)
-    }
-
-    /// As [`Polyline::at`], on segment `k`.
+    /// The point at a way that ends on segment `k`.
     pub(super) fn on(&self, k: usize, way: f64) -> Vector {
         let step = self.ways[k + 1] - self.ways[k];
         self.points[k].toward(self.points[k + 1], ((way - self.ways[k]) / step).clamp(0.0, 1.0))

@@ -2,7 +2,7 @@
 //! from the polyline, so that a round of halving touches only what it changes.
 
 use super::band::Band;
-use super::bspline::across;
+use super::conditions::{Polynomial, across};
 use super::curve::{Bezier, Cubic};
 use super::polyline::Polyline;
 use super::vector::Vector;
@@ -140,7 +140,7 @@ impl Span {
             self.deviation = deviation + most;
         }
         if self.deviation.is_nan() || self.deviation > tolerance {
-            self.deviation = across(line, &curve, self.ends, tolerance, scratch);
+            self.deviation = across(line, &Polynomial::new(&curve), self.ends, tolerance, scratch);
             self.measured = (curve, self.deviation);
         }
     }
