@@ -84,7 +84,10 @@ impl Fitted {
 /// The spline through a run of at least two points, within `tolerance`, and its deviation on each span. The error is the number of a vertex
 /// near which no spline keeps it.
 pub(super) fn fit(line: &Polyline<'_>, tolerance: f64) -> Result<Fitted, usize> {
-    let mut spans = vec![Span::new(line, [0.0, line.length()])];
+    // Three control points at an end that is held.
+    let first = if line.held == [None; 2] { 1 } else { 4 };
+    let way = |k: usize| line.length() * k as f64 / first as f64;
+    let mut spans: Vec<Span> = (0..first).map(|k| Span::new(line, [way(k), way(k + 1)])).collect();
     let mut scratch = Vec::new();
     for _ in 0..ROUNDS {
         let spline = least_squares(line, &mut spans, tolerance, &mut scratch);
@@ -120,6 +123,27 @@ fn corner(line: &Polyline<'_>, way: f64) -> usize {
     near.clamp(1, line.points.len().saturating_sub(2).max(1))
 }
 
+/// Holds the ends, with their derivatives where these are given.
+fn hold(band: &mut Band, line: &Polyline<'_>, knots: &[f64]) {
+    let last = knots.len() - 5;
+    let ends = [(line.points[0], 1.0), (line.points[line.points.len() - 1], -1.0)];
+    for (side, ((point, sign), held)) in ends.into_iter().zip(line.held).enumerate() {
+        // From this end on, whichever it is.
+        let number = |k: usize| if side == 0 { k } else { last - k };
+        band.hold(number(0), point);
+        if let Some([first, second]) = held {
+            let way =
+                |k: usize| if side == 0 { knots[3 + k] - knots[3] } else { knots[last + 1] - knots[last + 1 - k] };
+            // r' = 3 (P1 - P0)/t1, r'' = 6/t1 ((P2 - P1)/t2 - (P1 - P0)/t1).
+            let (near, far) = (way(1), way(2));
+            let third = first * (sign / 3.0);
+            let next = point + third * near;
+            band.hold(number(1), next);
+            band.hold(number(2), next + (second * (near / 6.0) + third) * far);
+        }
+    }
+}
+
 /// Fits the control points, and says in each span how far it and the polyline are apart. None where data leave a control point open: then no
 /// span keeps the tolerance.
 fn least_squares(line: &Polyline<'_>, spans: &mut [Span], tolerance: f64, scratch: &mut Vec<f64>) -> Option<Bspline> {
@@ -134,8 +158,7 @@ fn least_squares(line: &Polyline<'_>, spans: &mut [Span], tolerance: f64, scratc
     for (k, (span, parts)) in spans.iter().zip(&parts).enumerate() {
         span.add_to(&mut band, k, parts);
     }
-    band.hold(0, line.points[0]);
-    band.hold(count + 2, line.points[line.points.len() - 1]);
+    hold(&mut band, line, &knots);
     let Some(points) = band.solve() else {
         spans.iter_mut().for_each(|span| span.deviation = f64::INFINITY);
         return None;

@@ -7,7 +7,7 @@
 //! | --- | --- |
 //! | [`vector`], [`curve`] | points and polynomial curves in space |
 //! | `corners` | where a polyline is smooth, and what of it is straight (SA 3) |
-//! | `tangent` | its tangent at a vertex |
+//! | `tangent`, `seam` | its tangent at a vertex; how a closed one goes on at its start |
 //! | `conditions` | both conditions on a curve (SA 1, SA 2), as an upper bound |
 //! | `piecewise` | cubics with common tangents, as published |
 //! | [`arc`], `arcs` | circular arcs, for comparison |
@@ -33,6 +33,7 @@ pub mod ph;
 mod piecewise;
 mod polyline;
 pub mod program;
+mod seam;
 mod spans;
 mod tangent;
 pub mod vector;
@@ -84,7 +85,7 @@ pub struct Part {
     pub vertices: [usize; 2],
     /// An upper bound of how far curve and polyline are apart anywhere, in mm.
     pub deviation: f64,
-    /// Whether it goes on smoothly from the part before it: in direction, and but for [`Kind::Bezier`] and [`Kind::Arcs`] in curvature.
+    /// Whether it goes on smoothly from the part before it, the first one of a closed loop from the last: in direction, and but for [`Kind::Bezier`] and [`Kind::Arcs`] in curvature.
     pub is_smooth: bool,
 }
 
@@ -114,10 +115,17 @@ pub fn fit(points: &[Vector], kind: Kind, tolerance: f64) -> Fit {
         return found;
     }
     let kinds = corners::vertices(points, tolerance);
+    let seam = seam::seam(points, &kinds, tolerance);
+    let mut is_closed = seam.is_some();
     let mut from = 0;
     for to in (1..points.len()).filter(|&k| kinds[k] == Vertex::Corner) {
-        smooth(points, [from, to], kind, tolerance, &mut found);
+        let held = [seam.filter(|_| from == 0), seam.filter(|_| to + 1 == points.len())];
+        is_closed &= smooth(points, [from, to], kind, tolerance, held, &mut found);
         from = to;
+    }
+    // The curvature at the ends of a C2 PH spline is its own.
+    if let Some(part) = found.parts.first_mut().filter(|_| is_closed && kind != Kind::PhC2) {
+        part.is_smooth = true;
     }
     found
 }
@@ -136,18 +144,29 @@ fn from_chord(run: &[Vector], tolerance: f64) -> Option<f64> {
 }
 
 /// Fits the vertices between two corners. Where a vertex turns out to be a corner, both sides of it; where more curves than lines would be
-/// needed, the lines stay.
-fn smooth(points: &[Vector], ends: [usize; 2], kind: Kind, tolerance: f64, found: &mut Fit) {
-    let mut open = vec![ends];
-    while let Some([from, to]) = open.pop() {
+/// needed, the lines stay. `held` are the derivatives at both ends where they are given: where no curves have them, or more than lines would
+/// be needed, they are not kept. Whether they are.
+fn smooth(
+    points: &[Vector],
+    ends: [usize; 2],
+    kind: Kind,
+    tolerance: f64,
+    held: [Option<[Vector; 2]>; 2],
+    found: &mut Fit,
+) -> bool {
+    let mut is_kept = true;
+    let mut open = vec![(ends, held)];
+    while let Some(([from, to], held)) = open.pop() {
+        let is_held = held != [None; 2];
         let run = &points[from..=to];
         let ends = [run[0], run[run.len() - 1]];
         if let Some(deviation) = from_chord(run, tolerance) {
             let curve = Curve::Line(Bezier { points: ends });
             found.parts.push(Part { curve, vertices: [from, to], deviation, is_smooth: false });
+            is_kept &= !is_held;
             continue;
         }
-        let line = Polyline::new(run);
+        let line = Polyline { held, ..Polyline::new(run) };
         let first = found.parts.len();
         let corner = if kind == Kind::Ph {
             ph::fit(&line, from, tolerance, &mut found.parts)
@@ -165,15 +184,22 @@ fn smooth(points: &[Vector], ends: [usize; 2], kind: Kind, tolerance: f64, found
                 found.splines.push((first..found.parts.len(), fitted.spline));
             })
         };
-        if let Err(corner) = corner {
-            open.extend([[from + corner, to], [from, from + corner]]);
-        } else if found.parts.len() - first > to - from {
+        let is_too_many = found.parts.len() - first > to - from;
+        if corner.is_err() || is_too_many {
             found.parts.truncate(first);
             found.splines.pop_if(|(spans, _)| spans.start >= first);
+        }
+        if is_held && (corner.is_err() || is_too_many) {
+            is_kept = false;
+            open.push(([from, to], [None; 2]));
+        } else if let Err(corner) = corner {
+            open.extend([[from + corner, to], [from, from + corner]].map(|ends| (ends, [None; 2])));
+        } else if is_too_many {
             found.parts.extend((from..to).map(|k| {
                 let curve = Curve::Line(Bezier { points: [points[k], points[k + 1]] });
                 Part { curve, vertices: [k, k + 1], deviation: 0.0, is_smooth: false }
             }));
         }
     }
+    is_kept
 }

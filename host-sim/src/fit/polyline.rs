@@ -7,6 +7,9 @@ use super::vector::Vector;
 pub(super) struct Polyline<'a> {
     pub points: &'a [Vector],
     pub ways: Vec<f64>,
+    /// The first and the second derivative by the way that a curve must have at the start and at the end, where something is given: closed
+    /// loops go on there.
+    pub held: [Option<[Vector; 2]>; 2],
 }
 
 impl<'a> Polyline<'a> {
@@ -17,7 +20,7 @@ impl<'a> Polyline<'a> {
             way += if k > 0 { (*point - points[k - 1]).norm() } else { 0.0 };
             ways.push(way);
         }
-        Self { points, ways }
+        Self { points, ways, held: [None; 2] }
     }
 
     pub(super) fn length(&self) -> f64 {

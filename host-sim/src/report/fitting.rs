@@ -24,10 +24,10 @@ pub struct Fitted {
 
 /// Colours of neighbouring curves.
 const COLOURS: [RGBColor; 3] = [MAIN, OTHER, RGBColor(0x2f, 0x8f, 0x6b)];
-/// Samples of a curve.
-const SAMPLES: u32 = 400;
+/// Samples of a curve in the view of everything, and in the closer look.
+const SAMPLES: [u32; 2] = [60, 400];
 /// The lines that the closer look shows at least.
-const SHOWN: usize = 36;
+const SHOWN: usize = 60;
 /// Above each row of panels, for its names.
 const HEAD: f64 = 32.0;
 const EDGE: f64 = 6.0;
@@ -160,24 +160,34 @@ impl Panel {
         Ok(())
     }
 
-    fn curves(&self, canvas: &mut Canvas<'_>, fitted: &Fitted, width: f64, ring: f64) -> Result<(), ReportError> {
+    fn curves(&self, canvas: &mut Canvas<'_>, fitted: &Fitted, look: Look) -> Result<(), ReportError> {
         for (k, curve) in fitted.curves.iter().enumerate() {
-            self.line(canvas, &sampled(curve), Stroke::new(COLOURS[k % COLOURS.len()], width))?;
+            let stroke = Stroke::new(COLOURS[k % COLOURS.len()], look.width);
+            self.line(canvas, &sampled(curve, look.samples), stroke)?;
         }
         let ends = fitted.curves.iter().flat_map(|curve| [curve.at(0.0), curve.at(1.0)]);
         for place in ends.map(|at| (at.point.0[0], at.point.0[1])).filter(|&place| self.holds(place)) {
-            canvas.ring(self.at(place), ring, INK, PAPER)?;
+            canvas.ring(self.at(place), look.ring, INK, PAPER)?;
         }
         Ok(())
     }
 }
 
-fn sampled(curve: &Curve) -> Vec<Point> {
+/// How curves are drawn.
+#[derive(Clone, Copy, Debug)]
+struct Look {
+    samples: u32,
+    width: f64,
+    /// The radius of the rings at their ends.
+    ring: f64,
+}
+
+fn sampled(curve: &Curve, samples: u32) -> Vec<Point> {
     let at = |k: u32| {
-        let Vector([x, y, _]) = curve.at(f64::from(k) / f64::from(SAMPLES)).point;
+        let Vector([x, y, _]) = curve.at(f64::from(k) / f64::from(samples)).point;
         (x, y)
     };
-    (0..=SAMPLES).map(at).collect()
+    (0..=samples).map(at).collect()
 }
 
 /// Where so many lines in a row take the least room.
@@ -202,8 +212,12 @@ pub fn fitting(fitted: &Fitted) -> Result<Picture, ReportError> {
         [EDGE, EDGE + width + BETWEEN].map(|left| Panel { window: window.shaped(size), corner: (left, top), size })
     });
     let bottom = 2.0 * HEAD + height + CLOSE + EDGE;
-    let lines: usize = fitted.lines.iter().map(|chain| chain.len() - 1).sum();
-    let (before, after) = (format!("{lines} lines"), format!("{} {}", fitted.curves.len(), fitted.name));
+    // What goes straight up or down is a point here.
+    let is_seen = |[from, to]: [Vector; 2]| from.0[..2] != to.0[..2];
+    let lines = fitted.lines.iter().flat_map(|chain| chain.windows(2)).filter(|ends| is_seen([ends[0], ends[1]]));
+    let is_curve = |curve: &&Curve| !matches!(curve, Curve::Line(line) if !is_seen(line.points));
+    let curves = fitted.curves.iter().filter(is_curve);
+    let (before, after) = (format!("{} lines", lines.count()), format!("{} {}", curves.count(), fitted.name));
     let title = format!("{before}, and {after} within {} mm of them", fitted.tolerance);
     Picture::draw((WIDTH, bottom), title, |canvas| {
         let name = |canvas: &mut Canvas<'_>, panel: &Panel, text: &str, bold: bool| {
@@ -215,9 +229,9 @@ pub fn fitting(fitted: &Fitted) -> Result<Picture, ReportError> {
         name(canvas, &near[0], "where most lines meet", false)?;
         name(canvas, &near[1], "the same place", false)?;
         whole[0].lines(canvas, fitted, 1.5)?;
-        whole[1].curves(canvas, fitted, 3.0, 4.2)?;
+        whole[1].curves(canvas, fitted, Look { samples: SAMPLES[0], width: 3.0, ring: 4.2 })?;
         near[0].lines(canvas, fitted, 2.6)?;
-        near[1].curves(canvas, fitted, 3.6, 6.0)?;
+        near[1].curves(canvas, fitted, Look { samples: SAMPLES[1], width: 3.6, ring: 6.0 })?;
         for panel in whole {
             // What the closer look shows.
             let Window { low, high } = near[0].window;
