@@ -24,7 +24,11 @@ impl Height {
     /// From `from` to `to` along a segment.
     pub fn between(segment: &Segment<f64>, [from, to]: [f64; 2]) -> Self {
         let length = segment.length();
-        if length > 0.0 { Self::Linear { start: from, slope: (to - from) / length } } else { Self::Vertical([from, to]) }
+        if length > 0.0 {
+            Self::Linear { start: from, slope: (to - from) / length }
+        } else {
+            Self::Vertical([from, to])
+        }
     }
 
     /// At one z all along.

@@ -21,9 +21,10 @@ fn main() -> ExitCode {
 fn leave_with_the_reader() {
     let usual = std::panic::take_hook();
     std::panic::set_hook(Box::new(move |info| {
-        let is_gone = info.payload().downcast_ref::<String>().is_some_and(|text| {
-            text.starts_with("failed printing to stdout") && text.contains("Broken pipe")
-        });
+        let is_gone = info
+            .payload()
+            .downcast_ref::<String>()
+            .is_some_and(|text| text.starts_with("failed printing to stdout") && text.contains("Broken pipe"));
         if is_gone {
             // What `head` leaves behind it of a shell's own tools: killed by SIGPIPE.
             std::process::exit(128 + 13);

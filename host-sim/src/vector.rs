@@ -41,10 +41,32 @@ impl Vector {
 
     /// The distance from the segment between two points.
     pub fn from_segment(self, from: Self, to: Self) -> f64 {
-        let (along, off) = (to - from, self - from);
+        Chord::new(from, to).square_from(self).sqrt()
+    }
+}
+
+/// A segment from which many distances are taken.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Chord {
+    from: Vector,
+    along: Vector,
+    /// 1 over the square of its length; 0 where it has none.
+    inverse: f64,
+}
+
+impl Chord {
+    pub(super) fn new(from: Vector, to: Vector) -> Self {
+        let along = to - from;
         let square = along.dot(along);
-        let part = if square > 0.0 { (off.dot(along) / square).clamp(0.0, 1.0) } else { 0.0 };
-        (off - along * part).norm()
+        Self { from, along, inverse: if square > 0.0 { 1.0 / square } else { 0.0 } }
+    }
+
+    /// The square of a point's distance.
+    pub(super) fn square_from(&self, point: Vector) -> f64 {
+        let off = point - self.from;
+        let part = (off.dot(self.along) * self.inverse).clamp(0.0, 1.0);
+        let across = off - self.along * part;
+        across.dot(across)
     }
 }
 

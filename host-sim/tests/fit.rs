@@ -42,7 +42,7 @@ fn the_example_becomes_a_contour_that_runs() {
     }
     assert!((length / lines - 1.0).abs() < 1e-3, "{length} {lines}");
     // The program itself is all of its motions, those in the air too.
-    let whole = found(&run("simulate", &program, &["--json", "-"]))["contact_length"].as_f64().unwrap();
+    let whole = found(&run("simulate", &program, &["--json", "-"]))["centre_length"].as_f64().unwrap();
     let (mut at, mut motions) = ([0.0_f64; 3], 0.0);
     for line in HEART.lines().filter(|line| !line.starts_with('(')) {
         let mut next = at;
@@ -74,15 +74,16 @@ fn a_program_is_a_job() {
     let slow = file("job-slow.ngc", "G21\nG1 X10\n");
     let output = run("simulate", &slow, &[]);
     assert_eq!(output.status.code(), Some(2));
-    says("slow", &String::from_utf8(output.stderr).unwrap(), &["job-slow.ngc:2:", "feed", "--feed"]);
-    assert!(run("simulate", &slow, &["--feed", "600"]).status.success());
+    says("slow", &String::from_utf8(output.stderr).unwrap(), &["job-slow.ngc:2:", "feed", "F word"]);
 }
 
 /// What is written is read back: the same number of curves from it, none of them fitted again, and no less smooth.
 #[test]
 fn programs_are_read_back() {
     let program = file("fit-back.ngc", HEART);
-    for (curve, ending) in [("bezier", "nc"), ("bezier", "mpf"), ("bspline", "mpf"), ("bspline", "ngc")] {
+    for (curve, ending) in
+        [("bezier", "nc"), ("bezier", "mpf"), ("bspline", "mpf"), ("bspline", "ngc"), ("arc", "nc"), ("arc", "mpf")]
+    {
         let name = format!("fit-back-{curve}.{ending}");
         let written = nowhere(&name);
         let options = ["--tolerance", "0.01", "--curve", curve, "-o", written.to_str().unwrap(), "--json", "-"];
@@ -94,6 +95,48 @@ fn programs_are_read_back() {
         let lines = back["lines"].as_u64().unwrap();
         assert!(lines <= 4 && back["other_motions"].as_u64().unwrap() > 2, "{name}: {back} of {fitted}");
         assert!(!nowhere(&format!("{name}.part")).exists());
+    }
+}
+
+/// Arcs go to the contour form as arcs, and the contour is as long as that of PH curves.
+#[test]
+fn arcs_are_a_contour() {
+    let program = file("fit-arcs.ngc", HEART);
+    let lengths = ["arc", "ph"].map(|curve| {
+        let contour = nowhere(&format!("fit-arcs-{curve}.toml"));
+        let options = ["--tolerance", "0.01", "--curve", curve, "-o", contour.to_str().unwrap(), "--json", "-"];
+        let fitted = found(&run("fit", &program, &options));
+        assert!(fitted["max_deviation"].as_f64().unwrap() <= 0.01, "{fitted}");
+        let arcs = std::fs::read_to_string(&contour).unwrap().matches("\narc = {").count();
+        assert!(if curve == "arc" { arcs > 20 } else { arcs == 0 }, "{curve}: {arcs} arcs");
+        let simulated = found(&run("simulate", &contour, &["--json", "-"]));
+        simulated["contact_length"].as_f64().unwrap()
+    });
+    assert!((lengths[0] / lengths[1] - 1.0).abs() < 1e-3, "{lengths:?}");
+}
+
+/// Lines along a circle and along a helix are one arc each, written as G3 and read back as one.
+#[test]
+fn a_circle_and_a_helix_are_one_arc() {
+    for (name, rise) in [("circle", 0.0), ("helix", 3.0)] {
+        let mut text = "G21 G90 G17 F600\nG0 X10 Y0 Z0\n".to_string();
+        for k in 1..=500 {
+            let t = f64::from(k) / 500.0;
+            let (sin, cos) = (t * std::f64::consts::TAU).sin_cos();
+            text += &format!("G1 X{:.4} Y{:.4} Z{:.4}\n", 10.0 * cos, 10.0 * sin, rise * t);
+        }
+        let program = file(&format!("fit-{name}.ngc"), &text);
+        for ending in ["nc", "mpf"] {
+            let written = nowhere(&format!("fit-{name}-back.{ending}"));
+            let options = ["--tolerance", "0.005", "--curve", "arc", "-o", written.to_str().unwrap(), "--json", "-"];
+            let fitted = found(&run("fit", &program, &options));
+            assert_eq!(fitted["segments"], 1, "{name}: {fitted}");
+            let text = std::fs::read_to_string(&written).unwrap();
+            assert_eq!(text.matches("G3 ").count(), 1, "{text}");
+            let back = found(&run("fit", &written, &["--tolerance", "0.005", "--json", "-"]));
+            // The rapid to the start, and the arc.
+            assert_eq!((&back["lines"], &back["other_motions"]), (&0.into(), &2.into()), "{name}: {back}");
+        }
     }
 }
 

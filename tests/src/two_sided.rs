@@ -57,6 +57,17 @@ fn at(curve: &Curve, t: f64) -> Vector {
         Curve::Line(line) => line.points.iter().map(|p| p.0).collect(),
         Curve::Cubic(cubic) => cubic.points.iter().map(|p| p.0).collect(),
         Curve::Ph(ph) => return preimage(ph, t),
+        Curve::Arc(arc) => {
+            let [x, y, z] = arc.start.0;
+            let (radius, angle) =
+                ((x - arc.centre[0]).hypot(y - arc.centre[1]), (y - arc.centre[1]).atan2(x - arc.centre[0]));
+            let angle = angle + arc.sweep * t;
+            return Vector([
+                arc.centre[0] + radius * angle.cos(),
+                arc.centre[1] + radius * angle.sin(),
+                z + arc.rise * t,
+            ]);
+        }
     };
     let degree = points.len() as i32 - 1;
     let mut sum = [0.0; 3];

@@ -170,7 +170,8 @@ fn programs_of_others_become_paths() {
         let input = || BufReader::new(File::open(file).unwrap());
         let (mut is_plain, mut is_upright) = (true, false);
         let all = program::read(name, input(), &mut |item| {
-            is_plain &= !matches!(item.action, Action::Further { .. } | Action::Compensation(_) | Action::ToolLength(_));
+            is_plain &=
+                !matches!(item.action, Action::Further { .. } | Action::Compensation(_) | Action::ToolLength(_));
             if let Action::Motion(motion) = item.action
                 && let Some([.., z]) = motion.to()
             {

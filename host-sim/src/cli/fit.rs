@@ -6,11 +6,13 @@ use std::io::{BufReader, Write};
 use clap::{Args, ValueEnum};
 use host_sim::fit::contour::{COMPENSATION, Chains, only};
 use host_sim::fit::program::{Fitter, Step, Summary};
+use host_sim::fit::vector::Vector;
 use host_sim::fit::{Curve, Fit, Kind};
 use host_sim::input::InputError;
 use host_sim::program::item::{Compensation, Nurbs};
 use host_sim::program::write::{Dialect, Settings, WriteError, Writer};
-use host_sim::program::{self, Action, Feed, Motion};
+use host_sim::program::{self, Action, Feed, Motion, Plane};
+use host_sim::report::{self, Fitted};
 use host_sim::units::Units;
 use serde::Serialize;
 
@@ -37,6 +39,9 @@ pub struct FitVerb {
     /// Which of a program's contours is written to .toml, from 0
     #[arg(long, value_name = "NUMBER")]
     contour: Option<usize>,
+    /// Draw the lines and the curves, seen along z, as SVG
+    #[arg(long, value_name = "FILE.svg")]
+    svg: Option<String>,
     /// Write the result as JSON; `-` is standard output
     #[arg(long, value_name = "FILE")]
     json: Option<String>,
@@ -51,6 +56,30 @@ enum Shape {
     Bspline,
     /// PH quintics, continuous in curvature
     Ph,
+    /// PH quintics with two continuous derivatives
+    PhC2,
+    /// Lines and circular arcs, continuous in direction
+    Arc,
+}
+
+impl Shape {
+    /// What many of them are called.
+    fn name(self) -> &'static str {
+        match self {
+            Self::Bezier => "cubics",
+            Self::Bspline => "cubics of B-splines",
+            Self::Ph | Self::PhC2 => "PH curves",
+            Self::Arc => "lines and arcs",
+        }
+    }
+}
+
+/// Adds a line to the chain that it goes on from, or to a new one.
+fn draw(lines: &mut Vec<Vec<Vector>>, from: Vector, to: Vector) {
+    match lines.last_mut().filter(|chain| chain.last() == Some(&from)) {
+        Some(chain) => chain.push(to),
+        None => lines.push(vec![from, to]),
+    }
 }
 
 /// What `--json` writes.
@@ -78,39 +107,61 @@ impl FitVerb {
             let message = format_args!("the tolerance is {tolerance}; it must be a number above zero");
             return Err(InputError::new("--tolerance", message).into());
         }
-        let (target, summary) = self.fit().inspect_err(|_| self.forget())?;
+        let (target, summary, picture) = self.fit().inspect_err(|_| self.forget())?;
         let found = Found { summary, tolerance, units: Units::Mm };
         if let (Target::Contours(chains), Some(name)) = (&target, &self.output) {
             let chain = only(&chains.chains, self.contour).map_err(|message| InputError::new(&self.input, message))?;
             write(name, chain.to_toml().as_bytes())?;
         }
+        if let Some(name) = &self.svg {
+            let svg = report::fit_picture(&picture).map_err(|error| InputError::new(&self.input, error))?;
+            write(name, svg.as_bytes())?;
+        }
         if let Some(name) = &self.json {
             json(name, &found)?;
         }
-        if self.json.as_deref() != Some("-") && self.output.as_deref() != Some("-") {
+        if ![&self.json, &self.output, &self.svg].into_iter().any(|name| name.as_deref() == Some("-")) {
             print(&found);
         }
         Ok(())
     }
 
-    fn fit(&self) -> Result<(Target, Summary), Failure> {
-        let mut target = self.target()?;
-        let kind = match self.curve {
+    fn kind(&self) -> Kind {
+        match self.curve {
             Shape::Bezier => Kind::Bezier,
             Shape::Bspline => Kind::Bspline,
             Shape::Ph => Kind::Ph,
-        };
+            Shape::PhC2 => Kind::PhC2,
+            Shape::Arc => Kind::Arcs,
+        }
+    }
+
+    fn fit(&self) -> Result<(Target, Summary, Fitted), Failure> {
+        let mut target = self.target()?;
         let file = File::open(&self.input)
             .map_err(|error| InputError::new(&self.input, format_args!("cannot be read: {error}")))?;
         let bar = super::progress_of(file.metadata().map_or(0, |data| data.len()), "{bytes} of {total_bytes}");
         let input = BufReader::new(bar.wrap_read(file));
-        let mut give = |step: Step<'_>| target.take(&step);
-        let mut fitter = Fitter::new(kind, self.tolerance, &mut give);
+        let mut picture = Fitted { tolerance: self.tolerance, name: self.curve.name(), ..Fitted::default() };
+        let (is_drawn, curves) = (self.svg.is_some(), &mut picture.curves);
+        let mut give = |step: Step<'_>| {
+            if let (true, Step::Curves { fit, .. }) = (is_drawn, &step) {
+                curves.extend(fit.parts.iter().map(|part| part.curve));
+            }
+            target.take(&step)
+        };
+        let mut fitter = Fitter::new(self.kind(), self.tolerance, &mut give);
         let is_contour = self.output.as_deref().is_some_and(|name| ending(name) == "toml");
         if is_contour || program::is_drawing(&self.input) {
             fitter = fitter.with_its_curves();
         }
-        let left_out = program::read(&self.input, input, &mut |item| fitter.take(item))?;
+        let lines = &mut picture.lines;
+        let left_out = program::read(&self.input, input, &mut |item| {
+            if let (true, Action::Motion(Motion::Line { to })) = (is_drawn, item.action) {
+                draw(lines, Vector(item.from), Vector(to));
+            }
+            fitter.take(item)
+        })?;
         let summary = fitter.finish().map_err(|message| InputError::new(&self.input, message))?;
         bar.finish_and_clear();
         for warning in left_out {
@@ -131,7 +182,7 @@ impl FitVerb {
             }
             target = Target::Nothing;
         }
-        Ok((target, summary))
+        Ok((target, summary, picture))
     }
 
     fn target(&self) -> Result<Target, Failure> {
@@ -145,7 +196,7 @@ impl FitVerb {
                 return Err(InputError::new(name, message).into());
             }
         };
-        if self.curve == Shape::Ph {
+        if matches!(self.curve, Shape::Ph | Shape::PhC2) {
             let message = "PH quintics have no words in programs; write them to .toml, or take --curve bspline";
             return Err(InputError::new(name, message).into());
         }
@@ -210,6 +261,7 @@ fn curves(writer: &mut Writer<Box<dyn Write>>, fit: &Fit, feed: Feed) -> Result<
                 let [start, rest @ ..] = cubic.points.map(|point| point.0);
                 writer.motion(start, feed, &Motion::Bezier { points: &rest })?;
             }
+            Curve::Arc(arc) => writer.motion(arc.start.0, feed, &Motion::Arc(arc.motion()))?,
             // No program has them; `target` has refused.
             Curve::Ph(_) => {}
         }

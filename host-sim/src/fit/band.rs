@@ -18,14 +18,10 @@ impl Band {
         Self { rows: vec![[0.0; WIDTH]; unknowns], right: vec![Vector::default(); unknowns] }
     }
 
-    /// Adds the square of (the sum of `parts` times the control points from `first` on, less `point`).
-    pub(super) fn add(&mut self, first: usize, parts: [f64; WIDTH], point: Vector) {
-        for (row, &part) in parts.iter().enumerate() {
-            for (column, &other) in parts.iter().enumerate().skip(row) {
-                self.rows[first + row][column - row] += part * other;
-            }
-            self.right[first + row] = self.right[first + row] + point * part;
-        }
+    /// Adds to row `k` the entries from its diagonal on, and to its right side.
+    pub(super) fn add_row(&mut self, k: usize, entries: &[f64; WIDTH], right: Vector) {
+        self.rows[k].iter_mut().zip(entries).for_each(|(all, entry)| *all += entry);
+        self.right[k] = self.right[k] + right;
     }
 
     /// Holds one control point at a place.
@@ -52,8 +48,9 @@ impl Band {
                 return None;
             }
             let row = self.rows[k];
+            let inverse = 1.0 / pivot;
             for step in 1..WIDTH.min(count - k) {
-                let factor = row[step] / pivot;
+                let factor = row[step] * inverse;
                 for (below, entry) in self.rows[k + step].iter_mut().zip(&row[step..]) {
                     *below -= factor * entry;
                 }
@@ -85,7 +82,11 @@ mod tests {
             let t = f64::from(k as u32) / 60.0;
             let parts = [(1.0 - t) * 0.5, 0.4 * t + 0.1, 0.3, 0.2 + 0.1 * t];
             let sum = (0..4).map(|j| points[first + j] * parts[j]).fold(Vector::default(), |a, b| a + b);
-            band.add(first, parts, sum);
+            for row in 0..4 {
+                let entries =
+                    std::array::from_fn(|step| if row + step < 4 { parts[row] * parts[row + step] } else { 0.0 });
+                band.add_row(first + row, &entries, sum * parts[row]);
+            }
         }
         band.hold(0, points[0]);
         band.hold(8, points[8]);

@@ -5,9 +5,9 @@
 //! again, until none does.
 
 use super::band::Band;
-use super::conditions::walk;
-use super::curve::{Bezier, Cubic, Local};
+use super::curve::{Cubic, Local};
 use super::polyline::Polyline;
+use super::spans::{LOOKS, Span, bernstein, parts, place};
 use super::vector::Vector;
 
 /// A cubic spline over the way along a polyline.
@@ -19,9 +19,6 @@ pub struct Bspline {
     pub points: Vec<Vector>,
 }
 
-/// The places that a span is looked at in at least.
-const LOOKS: usize = 6;
-
 /// A spline that is slower than this turns back on itself: there is a cusp, and the polyline has a corner.
 const STANDING: f64 = 0.2;
 
@@ -29,109 +26,92 @@ const STANDING: f64 = 0.2;
 const ROUNDS: usize = 24;
 
 impl Bspline {
-    fn count(&self) -> usize {
-        self.knots.len() - 7
-    }
-
-    /// The ways at which spans end.
-    pub(super) fn breaks(&self) -> &[f64] {
-        &self.knots[3..self.knots.len() - 3]
-    }
-
     /// The span of that number by its Bernstein points.
     pub fn span(&self, k: usize) -> Cubic {
-        let (from, to) = (self.knots[k + 3], self.knots[k + 4]);
-        let blossom = |ways: [f64; 3]| {
-            let mut p = [self.points[k], self.points[k + 1], self.points[k + 2], self.points[k + 3]];
-            for (step, way) in ways.into_iter().enumerate() {
-                for j in 0..3 - step {
-                    let (low, high) = (self.knots[k + 1 + step + j], self.knots[k + 4 + j]);
-                    p[j] = p[j].toward(p[j + 1], (way - low) / (high - low));
-                }
-            }
-            p[0]
-        };
-        Bezier { points: [[from; 3], [from, from, to], [from, to, to], [to; 3]].map(blossom) }
-    }
-
-    /// The part between two ways of one span.
-    pub(super) fn part(&self, ways: [f64; 2]) -> Cubic {
-        let middle = 0.5 * (ways[0] + ways[1]);
-        let k = self.breaks().partition_point(|&at| at <= middle).clamp(1, self.count()) - 1;
-        let (from, to) = (self.knots[k + 3], self.knots[k + 4]);
-        let [start, end] = ways.map(|way| ((way - from) / (to - from)).clamp(0.0, 1.0));
-        let [before, _] = self.span(k).split(end);
-        let [_, part] = before.split(if end > 0.0 { start / end } else { 0.0 });
-        part
-    }
-
-    /// The way at which it is slowest, of some looked at, and how fast it is there: 1 where it goes as far as its parameter.
-    fn slowest(&self) -> (f64, f64) {
-        let looks = self
-            .breaks()
-            .windows(2)
-            .flat_map(|ends| (0..LOOKS).map(|look| ends[0] + (ends[1] - ends[0]) * (look as f64 + 0.5) / LOOKS as f64));
-        looks.map(|way| (way, self.at(way).first.norm())).min_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or((0.0, 1.0))
-    }
-
-    /// Where it is at a way; derivatives are by the way.
-    pub(super) fn at(&self, way: f64) -> Local {
-        let k = self.breaks().partition_point(|&at| at <= way).clamp(1, self.count()) - 1;
-        let (from, to) = (self.knots[k + 3], self.knots[k + 4]);
-        let step = to - from;
-        let local = self.span(k).at(((way - from) / step).clamp(0.0, 1.0));
-        Local { first: local.first * (1.0 / step), second: local.second * (1.0 / (step * step)), ..local }
+        bernstein(&self.points[k..k + 4], &parts(&self.knots, k))
     }
 }
 
-/// The four basis functions that are not zero on span `k`, at a way.
-fn basis(knots: &[f64], k: usize, way: f64) -> [f64; 4] {
-    let mut parts = [1.0, 0.0, 0.0, 0.0];
-    for degree in 1..4 {
-        let mut carried = 0.0;
-        for j in 0..degree {
-            let (low, high) = (knots[k + 4 + j - degree], knots[k + 4 + j]);
-            let part = parts[j] / (high - low);
-            parts[j] = carried + (high - way) * part;
-            carried = (way - low) * part;
-        }
-        parts[degree] = carried;
+/// A spline through a polyline.
+#[derive(Clone, Debug)]
+pub(super) struct Fitted {
+    pub spline: Bspline,
+    /// Its spans with their deviations ...
+    pub spans: Vec<Span>,
+    /// ... and their curves.
+    pub curves: Vec<Cubic>,
+}
+
+impl Fitted {
+    /// Where the spline is at a way; derivatives are by the way.
+    pub(super) fn at(&self, way: f64) -> Local {
+        self.on(self.spans.partition_point(|span| span.ends[0] <= way).max(1) - 1, way)
     }
-    parts
+
+    /// As [`Fitted::at`], on the span of that number.
+    pub(super) fn on(&self, number: usize, way: f64) -> Local {
+        let [from, to] = self.spans[number].ends;
+        let inverse = 1.0 / (to - from);
+        let local = self.curves[number].at(((way - from) * inverse).clamp(0.0, 1.0));
+        Local { first: local.first * inverse, second: local.second * (inverse * inverse), ..local }
+    }
+
+    /// The way at which it is slowest, where it is slower than [`STANDING`] at one of some looked at: 1 is where it goes as far as its
+    /// parameter.
+    fn standing(&self) -> Option<f64> {
+        let mut slowest = None;
+        let mut least = STANDING;
+        for (Span { ends: [from, to], .. }, curve) in self.spans.iter().zip(&self.curves) {
+            let step = to - from;
+            // No point of the first derivative is nearer to zero than its control points are along the chord.
+            let chord = (curve.points[3] - curve.points[0]) * (1.0 / step);
+            let bar = STANDING * step * chord.norm();
+            if chord.norm() > 0.0 && curve.points.windows(2).all(|pair| 3.0 * (pair[1] - pair[0]).dot(chord) >= bar) {
+                continue;
+            }
+            for look in 0..LOOKS {
+                let t = place(look);
+                let speed = curve.at(t).first.norm() / step;
+                if speed < least {
+                    (least, slowest) = (speed, Some(from + step * t));
+                }
+            }
+        }
+        slowest
+    }
 }
 
 /// The spline through a run of at least two points, within `tolerance`, and its deviation on each span. The error is the number of a vertex
 /// near which no spline keeps it.
-pub(super) fn fit(line: &Polyline<'_>, tolerance: f64) -> Result<(Bspline, Vec<f64>), usize> {
-    let mut breaks = vec![0.0, line.length()];
+pub(super) fn fit(line: &Polyline<'_>, tolerance: f64) -> Result<Fitted, usize> {
+    // Three control points at an end that is held.
+    let first = if line.held == [None; 2] { 1 } else { 4 };
+    let way = |k: usize| line.length() * k as f64 / first as f64;
+    let mut spans: Vec<Span> = (0..first).map(|k| Span::new(line, [way(k), way(k + 1)])).collect();
+    let mut scratch = Vec::new();
     for _ in 0..ROUNDS {
-        let spline = least_squares(line, &breaks);
-        let deviations: Vec<f64> = match &spline {
-            Some(spline) => (0..spline.count()).map(|k| deviation(line, spline, k, tolerance)).collect(),
-            None => vec![f64::INFINITY; breaks.len() - 1],
-        };
-        let worst = deviations.iter().copied().fold(0.0, f64::max);
+        let spline = least_squares(line, &mut spans, tolerance, &mut scratch);
         if let Some(spline) = spline
-            && worst <= tolerance
+            && spans.iter().all(|span| span.deviation <= tolerance)
         {
-            return match spline.slowest() {
-                (way, speed) if speed < STANDING && line.points.len() > 2 => Err(corner(line, way)),
-                _ => Ok((spline, deviations)),
+            let curves = (0..spans.len()).map(|k| spline.span(k)).collect();
+            let fitted = Fitted { spline, spans, curves };
+            return match fitted.standing() {
+                Some(way) if line.points.len() > 2 => Err(corner(line, way)),
+                _ => Ok(fitted),
             };
         }
-        let mut finer = Vec::with_capacity(2 * breaks.len());
-        for (ends, &deviation) in breaks.windows(2).zip(&deviations) {
-            finer.push(ends[0]);
-            if deviation > tolerance {
-                let middle = 0.5 * (ends[0] + ends[1]);
-                if ends[1] - ends[0] < 0.5 * tolerance {
-                    return Err(corner(line, middle));
-                }
-                finer.push(middle);
+        let mut finer = Vec::with_capacity(2 * spans.len());
+        for span in spans {
+            if span.deviation <= tolerance {
+                finer.push(span);
+            } else if span.ends[1] - span.ends[0] < 0.5 * tolerance {
+                return Err(corner(line, 0.5 * (span.ends[0] + span.ends[1])));
+            } else {
+                finer.extend(span.halves(line));
             }
         }
-        finer.push(line.length());
-        breaks = finer;
+        spans = finer;
     }
     Err(corner(line, 0.5 * line.length()))
 }
@@ -143,59 +123,48 @@ fn corner(line: &Polyline<'_>, way: f64) -> usize {
     near.clamp(1, line.points.len().saturating_sub(2).max(1))
 }
 
-fn least_squares(line: &Polyline<'_>, breaks: &[f64]) -> Option<Bspline> {
-    let spans = breaks.len() - 1;
-    let (first, last) = (breaks[0], breaks[spans]);
-    let mut knots = vec![first; 3];
-    knots.extend_from_slice(breaks);
-    knots.extend([last; 3]);
-    let mut band = Band::new(spans + 3);
-    for (k, ends) in breaks.windows(2).enumerate() {
-        let vertices = line.between(ends[0], ends[1]);
-        if vertices.len() >= LOOKS {
-            for j in vertices {
-                band.add(k, basis(&knots, k, line.ways[j]), line.points[j]);
-            }
-        } else {
-            for look in 0..LOOKS {
-                let way = ends[0] + (ends[1] - ends[0]) * (look as f64 + 0.5) / LOOKS as f64;
-                band.add(k, basis(&knots, k, way), line.at(way));
-            }
+/// Holds the ends, with their derivatives where these are given.
+fn hold(band: &mut Band, line: &Polyline<'_>, knots: &[f64]) {
+    let last = knots.len() - 5;
+    let ends = [(line.points[0], 1.0), (line.points[line.points.len() - 1], -1.0)];
+    for (side, ((point, sign), held)) in ends.into_iter().zip(line.held).enumerate() {
+        // From this end on, whichever it is.
+        let number = |k: usize| if side == 0 { k } else { last - k };
+        band.hold(number(0), point);
+        if let Some([first, second]) = held {
+            let way =
+                |k: usize| if side == 0 { knots[3 + k] - knots[3] } else { knots[last + 1] - knots[last + 1 - k] };
+            // r' = 3 (P1 - P0)/t1, r'' = 6/t1 ((P2 - P1)/t2 - (P1 - P0)/t1).
+            let (near, far) = (way(1), way(2));
+            let third = first * (sign / 3.0);
+            let next = point + third * near;
+            band.hold(number(1), next);
+            band.hold(number(2), next + (second * (near / 6.0) + third) * far);
         }
     }
-    band.hold(0, line.points[0]);
-    band.hold(spans + 2, line.points[line.points.len() - 1]);
-    let points = band.solve()?;
-    Some(Bspline { knots, points })
 }
 
-/// How far span `k` and the polyline are apart.
-fn deviation(line: &Polyline<'_>, spline: &Bspline, k: usize, tolerance: f64) -> f64 {
-    let curve = spline.span(k);
-    let ways = [spline.knots[k + 3], spline.knots[k + 4]];
-    across(line, &curve, ways, tolerance)
-}
-
-/// How far a curve and the polyline between two ways are apart; infinite where it is more than the tolerance.
-pub(super) fn across<const N: usize>(line: &Polyline<'_>, curve: &Bezier<N>, ways: [f64; 2], tolerance: f64) -> f64 {
-    // The ends of the curve stand for the points of the polyline that are nearest to them, on their segments.
-    let ends = [(ways[0], curve.points[0]), (ways[1], curve.points[N - 1])].map(|(way, end)| {
-        let k = line.segment(way);
-        let along = line.points[k + 1] - line.points[k];
-        let part = ((end - line.points[k]).dot(along) / along.dot(along)).clamp(0.0, 1.0);
-        (line.ways[k] + part * (line.ways[k + 1] - line.ways[k]), line.points[k].toward(line.points[k + 1], part))
-    });
-    let vertices = line.between(ends[0].0, ends[1].0);
-    let length = ends[1].0 - ends[0].0;
-    let mut points = Vec::with_capacity(vertices.len() + 2);
-    let mut feet = Vec::with_capacity(vertices.len() + 2);
-    points.push(ends[0].1);
-    feet.push(0.0);
-    for j in vertices {
-        points.push(line.points[j]);
-        feet.push((line.ways[j] - ends[0].0) / length);
+/// Fits the control points, and says in each span how far it and the polyline are apart. None where data leave a control point open: then no
+/// span keeps the tolerance.
+fn least_squares(line: &Polyline<'_>, spans: &mut [Span], tolerance: f64, scratch: &mut Vec<f64>) -> Option<Bspline> {
+    let count = spans.len();
+    let (first, last) = (0.0, line.length());
+    let mut knots = Vec::with_capacity(count + 7);
+    knots.extend([first; 3]);
+    knots.extend(spans.iter().map(|span| span.ends[0]));
+    knots.extend([last; 4]);
+    let mut band = Band::new(count + 3);
+    let parts: Vec<[[f64; 4]; 4]> = (0..count).map(|k| parts(&knots, k)).collect();
+    for (k, (span, parts)) in spans.iter().zip(&parts).enumerate() {
+        span.add_to(&mut band, k, parts);
     }
-    points.push(ends[1].1);
-    feet.push(1.0);
-    walk(curve, &points, &mut feet, tolerance, tolerance).map_or(f64::INFINITY, |walk| walk.deviation)
+    hold(&mut band, line, &knots);
+    let Some(points) = band.solve() else {
+        spans.iter_mut().for_each(|span| span.deviation = f64::INFINITY);
+        return None;
+    };
+    for (k, (span, parts)) in spans.iter_mut().zip(&parts).enumerate() {
+        span.take(line, bernstein(&points[k..k + 4], parts), tolerance, scratch);
+    }
+    Some(Bspline { knots, points })
 }

@@ -109,6 +109,10 @@ impl Chains {
                 let [_, points @ ..] = cubic.points;
                 (cubic.points.to_vec(), Segment::Bezier { points })
             }
+            Curve::Arc(arc) => {
+                let (to, ccw) = (arc.at(1.0).point, arc.sweep > 0.0);
+                (vec![arc.start, to], Segment::Arc { to, centre: arc.centre, ccw })
+            }
             Curve::Ph(ph) => (ph.bezier().points.to_vec(), Segment::Ph { w: ph.plane.w }),
         };
         if points.iter().any(|point| (point.0[2] - points[0].0[2]).abs() > SAME) {

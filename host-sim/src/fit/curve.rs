@@ -1,6 +1,6 @@
 //! Polynomial curves by their Bernstein control points: lines of degree 1, cubics of degree 3, PH quintics of degree 5.
 
-use super::vector::Vector;
+use super::vector::{Chord, Vector};
 
 /// A curve over 0..=1 with N control points.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -79,7 +79,65 @@ impl<const N: usize> Bezier<N> {
     /// The largest distance of its control points from the segment between two points: no point of the curve is farther from it, since a
     /// distance from a segment is a convex function.
     pub fn from_segment(&self, from: Vector, to: Vector) -> f64 {
-        self.points.iter().map(|point| point.from_segment(from, to)).fold(0.0, f64::max)
+        self.from_chord(&Chord::new(from, to))
+    }
+
+    /// As [`Bezier::from_segment`].
+    pub(super) fn from_chord(&self, chord: &Chord) -> f64 {
+        self.points.iter().map(|&point| chord.square_from(point)).fold(0.0, f64::max).sqrt()
+    }
+
+    /// The curve between two parameters.
+    pub(super) fn part(&self, from: f64, to: f64) -> Self {
+        let [before, _] = self.split(to);
+        let [_, part] = before.split(if to > 0.0 { from / to } else { 0.0 });
+        part
+    }
+
+    /// What the second derivative is nowhere longer than.
+    pub(super) fn bend(&self) -> f64 {
+        let second = |p: &[Vector]| {
+            let bend = p[0] - p[1] * 2.0 + p[2];
+            bend.dot(bend)
+        };
+        let degree = Self::DEGREE as f64;
+        self.points.windows(3).map(second).fold(0.0, f64::max).sqrt() * degree * (degree - 1.0)
+    }
+
+    /// By powers of the parameter.
+    pub(super) fn powers(&self) -> Powers<N> {
+        let mut differences = self.points;
+        let mut coefficients = [Vector::default(); N];
+        let mut binomial = 1.0;
+        for (k, coefficient) in coefficients.iter_mut().enumerate().skip(1) {
+            for j in 0..N - k {
+                differences[j] = differences[j + 1] - differences[j];
+            }
+            binomial *= (N - k) as f64 / k as f64;
+            *coefficient = differences[0] * binomial;
+        }
+        Powers { origin: self.points[0], coefficients }
+    }
+}
+
+/// A curve by powers of its parameter, relative to its start: three times faster to evaluate than its control points, and as exact
+/// for a curve that is not much longer than its chord.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Powers<const N: usize> {
+    origin: Vector,
+    coefficients: [Vector; N],
+}
+
+impl<const N: usize> Powers<N> {
+    /// By Horner's rule.
+    pub(super) fn at(&self, t: f64) -> Local {
+        let [mut point, mut first, mut half] = [self.coefficients[N - 1], Vector::default(), Vector::default()];
+        for &coefficient in self.coefficients.iter().rev().skip(1) {
+            half = half * t + first;
+            first = first * t + point;
+            point = point * t + coefficient;
+        }
+        Local { point: self.origin + point, first, second: half * 2.0 }
     }
 }
 
@@ -106,6 +164,17 @@ mod tests {
         for t in [0.0, 0.2, 0.7, 1.0] {
             assert!((low.at(t).point - CURVE.at(0.4 * t).point).norm() < 1e-14);
             assert!((high.at(t).point - CURVE.at(0.4 + 0.6 * t).point).norm() < 1e-14);
+        }
+    }
+
+    #[test]
+    fn powers_are_the_curve() {
+        for t in [0.0, 0.1, 0.5, 1.0] {
+            let (a, b) = (CURVE.powers().at(t), CURVE.at(t));
+            for (a, b) in [(a.point, b.point), (a.first, b.first), (a.second, b.second)] {
+                assert!((a - b).norm() < 1e-13, "{t}: {a:?} {b:?}");
+            }
+            assert!(b.second.norm() <= CURVE.bend());
         }
     }
 

@@ -14,13 +14,13 @@ pub struct Joins {
 }
 
 /// A curvature that counts as this much at least, in 1/mm: 1 m of radius is straight.
-const STRAIGHT: f64 = 1e-3;
+pub(super) const STRAIGHT: f64 = 1e-3;
 
-/// Measures all joins but those at corners.
+/// Measures all joins but those at corners; that of the last part to the first where a loop is closed smoothly.
 pub fn joins(parts: &[Part]) -> Joins {
     let mut found = Joins::default();
-    for pair in parts.windows(2) {
-        let [before, after] = pair else { continue };
+    let closing = parts.last().into_iter().chain(parts);
+    for (before, after) in closing.zip(parts) {
         if !after.is_smooth {
             continue;
         }
@@ -46,6 +46,7 @@ impl Curve {
             Self::Line(line) => line.at(t),
             Self::Cubic(cubic) => Bezier::at(cubic, t),
             Self::Ph(ph) => ph.bezier().at(t),
+            Self::Arc(arc) => arc.at(t),
         }
     }
 }

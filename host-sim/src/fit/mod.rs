@@ -7,18 +7,23 @@
 //! | --- | --- |
 //! | [`vector`], [`curve`] | points and polynomial curves in space |
 //! | `corners` | where a polyline is smooth, and what of it is straight (SA 3) |
-//! | `tangent` | its tangent at a vertex |
+//! | `tangent`, `seam` | its tangent at a vertex; how a closed one goes on at its start |
 //! | `conditions` | both conditions on a curve (SA 1, SA 2), as an upper bound |
 //! | `piecewise` | cubics with common tangents, as published |
-//! | `polyline`, `band` | a polyline by the way along it; least squares of splines |
+//! | [`arc`], `arcs` | circular arcs, for comparison |
+//! | `polyline`, `spans`, `band` | a polyline by the way along it; least squares of splines |
 //! | [`bspline`] | cubic B-splines with continuous curvature (SA 5) |
 //! | [`ph`] | PH quintics with continuous curvature |
+//! | [`c2`] | PH quintics with two continuous derivatives |
 //! | [`joins`] | how smoothly one curve goes on to the next |
 //! | [`contour`] | the result in the contour form |
 //! | [`program`] | all of that for the lines of a program |
 
+pub mod arc;
+mod arcs;
 mod band;
 pub mod bspline;
+pub mod c2;
 mod conditions;
 pub mod contour;
 mod corners;
@@ -28,18 +33,20 @@ pub mod ph;
 mod piecewise;
 mod polyline;
 pub mod program;
+mod seam;
+mod spans;
 mod tangent;
 
 use std::ops::Range;
 
 pub use crate::vector;
-
+use arc::RisingArc;
 use bspline::Bspline;
 use corners::Vertex;
 use curve::{Bezier, Cubic};
 use ph::RisingPh;
 use polyline::Polyline;
-use vector::Vector;
+use vector::{Chord, Vector};
 
 /// What is laid through a polyline.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -50,6 +57,10 @@ pub enum Kind {
     Bspline,
     /// PH quintics with continuous curvature in x and y, along which z goes; cubic B-splines where the way is straight up or down.
     Ph,
+    /// As [`Kind::Ph`], with two continuous derivatives between two corners.
+    PhC2,
+    /// Lines and circular arcs, continuous in direction where no corner is; z goes along evenly.
+    Arcs,
 }
 
 /// One curve of a fit.
@@ -61,6 +72,8 @@ pub enum Curve {
     Cubic(Cubic),
     /// A PH quintic.
     Ph(RisingPh),
+    /// A circular arc or a part of a helix.
+    Arc(RisingArc),
 }
 
 /// A part of a fit.
@@ -72,7 +85,7 @@ pub struct Part {
     pub vertices: [usize; 2],
     /// An upper bound of how far curve and polyline are apart anywhere, in mm.
     pub deviation: f64,
-    /// Whether it goes on smoothly from the part before it: in direction, and but for [`Kind::Bezier`] in curvature.
+    /// Whether it goes on smoothly from the part before it, the first one of a closed loop from the last: in direction, and but for [`Kind::Bezier`] and [`Kind::Arcs`] in curvature.
     pub is_smooth: bool,
 }
 
@@ -97,53 +110,96 @@ pub fn fit(points: &[Vector], kind: Kind, tolerance: f64) -> Fit {
         found.parts = piecewise::fit(points, tolerance);
         return found;
     }
+    if kind == Kind::Arcs {
+        found.parts = arcs::fit(points, tolerance);
+        return found;
+    }
     let kinds = corners::vertices(points, tolerance);
+    let seam = seam::seam(points, &kinds, tolerance);
+    let mut is_closed = seam.is_some();
     let mut from = 0;
     for to in (1..points.len()).filter(|&k| kinds[k] == Vertex::Corner) {
-        smooth(points, [from, to], kind, tolerance, &mut found);
+        let held = [seam.filter(|_| from == 0), seam.filter(|_| to + 1 == points.len())];
+        is_closed &= smooth(points, [from, to], kind, tolerance, held, &mut found);
         from = to;
+    }
+    // The curvature at the ends of a C2 PH spline is its own.
+    if let Some(part) = found.parts.first_mut().filter(|_| is_closed && kind != Kind::PhC2) {
+        part.is_smooth = true;
     }
     found
 }
 
+/// How far points are from the segment between the first and the last of them, where that is within the tolerance.
+fn from_chord(run: &[Vector], tolerance: f64) -> Option<f64> {
+    let chord = Chord::new(run[0], run[run.len() - 1]);
+    let mut worst = 0.0_f64;
+    for &point in run {
+        worst = worst.max(chord.square_from(point));
+        if worst > tolerance * tolerance {
+            return None;
+        }
+    }
+    Some(worst.sqrt())
+}
+
 /// Fits the vertices between two corners. Where a vertex turns out to be a corner, both sides of it; where more curves than lines would be
-/// needed, the lines stay.
-fn smooth(points: &[Vector], ends: [usize; 2], kind: Kind, tolerance: f64, found: &mut Fit) {
-    let mut open = vec![ends];
-    while let Some([from, to]) = open.pop() {
+/// needed, the lines stay. `held` are the derivatives at both ends where they are given: where no curves have them, or more than lines would
+/// be needed, they are not kept. Whether they are.
+fn smooth(
+    points: &[Vector],
+    ends: [usize; 2],
+    kind: Kind,
+    tolerance: f64,
+    held: [Option<[Vector; 2]>; 2],
+    found: &mut Fit,
+) -> bool {
+    let mut is_kept = true;
+    let mut open = vec![(ends, held)];
+    while let Some(([from, to], held)) = open.pop() {
+        let is_held = held != [None; 2];
         let run = &points[from..=to];
         let ends = [run[0], run[run.len() - 1]];
-        let deviation = run.iter().map(|point| point.from_segment(ends[0], ends[1])).fold(0.0, f64::max);
-        if deviation <= tolerance {
+        if let Some(deviation) = from_chord(run, tolerance) {
             let curve = Curve::Line(Bezier { points: ends });
             found.parts.push(Part { curve, vertices: [from, to], deviation, is_smooth: false });
+            is_kept &= !is_held;
             continue;
         }
-        let line = Polyline::new(run);
+        let line = Polyline { held, ..Polyline::new(run) };
         let first = found.parts.len();
         let corner = if kind == Kind::Ph {
             ph::fit(&line, from, tolerance, &mut found.parts)
+        } else if kind == Kind::PhC2 {
+            c2::fit(&line, from, tolerance, &mut found.parts)
         } else {
-            bspline::fit(&line, tolerance).map(|(spline, deviations)| {
-                let spans = spline.breaks().windows(2).zip(deviations).enumerate();
-                found.parts.extend(spans.map(|(k, (ways, deviation))| {
+            bspline::fit(&line, tolerance).map(|fitted| {
+                found.parts.extend(fitted.spans.iter().zip(&fitted.curves).enumerate().map(|(k, (span, curve))| {
                     let vertex = |way: f64, is_end: bool| from + line.segment(way) + usize::from(is_end);
-                    let is_last = ways[1] >= line.length();
-                    let vertices = [vertex(ways[0], false), vertex(ways[1], is_last)];
-                    Part { curve: Curve::Cubic(spline.span(k)), vertices, deviation, is_smooth: k > 0 }
+                    let [start, end] = span.ends;
+                    let vertices = [vertex(start, false), vertex(end, end >= line.length())];
+                    let (curve, deviation) = (Curve::Cubic(*curve), span.deviation);
+                    Part { curve, vertices, deviation, is_smooth: k > 0 }
                 }));
-                found.splines.push((first..found.parts.len(), spline));
+                found.splines.push((first..found.parts.len(), fitted.spline));
             })
         };
-        if let Err(corner) = corner {
-            open.extend([[from + corner, to], [from, from + corner]]);
-        } else if found.parts.len() - first > to - from {
+        let is_too_many = found.parts.len() - first > to - from;
+        if corner.is_err() || is_too_many {
             found.parts.truncate(first);
             found.splines.pop_if(|(spans, _)| spans.start >= first);
+        }
+        if is_held && (corner.is_err() || is_too_many) {
+            is_kept = false;
+            open.push(([from, to], [None; 2]));
+        } else if let Err(corner) = corner {
+            open.extend([[from + corner, to], [from, from + corner]].map(|ends| (ends, [None; 2])));
+        } else if is_too_many {
             found.parts.extend((from..to).map(|k| {
                 let curve = Curve::Line(Bezier { points: [points[k], points[k + 1]] });
                 Part { curve, vertices: [k, k + 1], deviation: 0.0, is_smooth: false }
             }));
         }
     }
+    is_kept
 }

@@ -8,9 +8,10 @@
 use shared::complex::Complex;
 use shared::curve::PhQuintic;
 
-use super::bspline::{self, Bspline, across};
-use super::curve::Bezier;
-use super::joins::break_between;
+use super::bspline::{self, Fitted};
+use super::conditions::{Polynomial, across};
+use super::curve::{Bezier, Local};
+use super::joins::STRAIGHT;
 use super::piecewise::longest;
 use super::polyline::Polyline;
 use super::vector::Vector;
@@ -18,6 +19,9 @@ use super::{Curve, Part};
 
 /// The part of the tolerance that the B-spline takes.
 const SPLINE: f64 = 0.4;
+
+/// The part of a way that a last stride may be: each of them is a system to solve.
+const FINE: usize = 16;
 
 /// A PH quintic in x and y that rises and falls on its way.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -53,9 +57,8 @@ pub(super) struct Node {
 const STEEP: f64 = 0.02;
 
 impl Node {
-    /// None where the way goes straight up or down.
-    fn of(spline: &Bspline, way: f64) -> Option<Self> {
-        let at = spline.at(way);
+    /// None where the way goes straight up or down. Derivatives are by the way along the polyline.
+    pub(super) fn of(at: &Local) -> Option<Self> {
         let flat = |v: Vector| Complex::new(v.0[0], v.0[1]);
         let (first, second) = (flat(at.first), flat(at.second));
         let speed = first.norm();
@@ -65,13 +68,13 @@ impl Node {
         let tangent = first * (1.0 / speed);
         let slope = at.first.0[2] / speed;
         let bend = (at.second.0[2] - slope * tangent.dot(second)) / (speed * speed);
-        let curvature = first.cross(second) / speed.powi(3);
+        let curvature = first.cross(second) / (speed * speed * speed);
         Some(Self { point: flat(at.point), tangent, curvature, z: [at.point.0[2], slope, bend] })
     }
 }
 
 /// z over the parameter of a curve, so that it and two derivatives by the way are those of the nodes.
-fn rise(plane: &PhQuintic<f64>, from: &Node, to: &Node) -> [f64; 6] {
+pub(super) fn rise(plane: &PhQuintic<f64>, from: &Node, to: &Node) -> [f64; 6] {
     let sigma = plane.speed_coefficients();
     // By the parameter: z' = z_s sigma, z'' = z_ss sigma^2 + z_s sigma'.
     let by_parameter = |[_, slope, bend]: [f64; 3], sigma: f64, change: f64| {
@@ -83,42 +86,53 @@ fn rise(plane: &PhQuintic<f64>, from: &Node, to: &Node) -> [f64; 6] {
     [start, start + first, start + 2.0 * first + second, end - 2.0 * last + before, end - last, end]
 }
 
+/// Where a curve may end.
+#[derive(Clone, Copy, Debug)]
+struct Place {
+    way: f64,
+    /// The span that begins there or goes over it.
+    span: usize,
+}
+
 /// Fits a run of at least two points. Where no PH quintic follows, and where the way goes straight up or down, the cubics of the B-spline
 /// stay, which share point, tangent and curvature with it. The error is as that of [`bspline::fit`].
 pub(super) fn fit(line: &Polyline<'_>, first: usize, tolerance: f64, parts: &mut Vec<Part>) -> Result<(), usize> {
-    let (spline, _) = bspline::fit(line, SPLINE * tolerance)?;
-    let ways = candidates(line, &spline);
-    let nodes: Vec<Option<Node>> = ways.iter().map(|&way| Node::of(&spline, way)).collect();
-    let last = ways.len() - 1;
+    let fitted = bspline::fit(line, SPLINE * tolerance)?;
+    let places = candidates(line, &fitted);
+    let last = places.len() - 1;
+    let node = |number: usize| {
+        let Place { way, span } = places[number];
+        let local = fitted.on(span, way);
+        Node::of(&local).map(|node| (node, local))
+    };
     let (mut from, mut guess) = (0, 8);
-    let mut found = Vec::new();
+    let mut scratch = Vec::new();
+    let before = parts.len();
     while from < last {
+        let start = node(from);
         let mut attempt = |to: usize| {
-            let (start, end) = (nodes[from].as_ref()?, nodes[to].as_ref()?);
-            let (curve, deviation) = between(line, &spline, [start, end], [ways[from], ways[to]], tolerance)?;
+            let ways = [places[from].way, places[to].way];
+            let (curve, deviation) = between(line, [start.as_ref()?, &node(to)?], ways, tolerance, &mut scratch)?;
             Some((curve, deviation, to))
         };
-        let to = match longest(&mut attempt, from, last, guess) {
-            Some((curve, deviation, to)) => {
-                found.push(([ways[from], ways[to]], curve, deviation));
-                to
-            }
-            None => {
-                // To the end of the span.
-                let ends = spline.breaks();
-                let end = ends[ends.partition_point(|&at| at <= ways[from]).min(ends.len() - 1)];
-                let to = ways.partition_point(|&way| way < end).clamp(from + 1, last);
-                let part = [ways[from], ways[to]];
-                found.push((part, Curve::Cubic(spline.part(part)), SPLINE * tolerance));
-                to
-            }
-        };
+        let (curve, deviation, to) = longest(&mut attempt, from, last, guess, FINE).unwrap_or_else(|| {
+            // To the end of the span.
+            let Place { way, span } = places[from];
+            let (span, curve) = (&fitted.spans[span], &fitted.curves[span]);
+            let to = places.partition_point(|place| place.way < span.ends[1]).clamp(from + 1, last);
+            let inverse = 1.0 / (span.ends[1] - span.ends[0]);
+            let [start, end] = [way, places[to].way].map(|way| ((way - span.ends[0]) * inverse).clamp(0.0, 1.0));
+            (Curve::Cubic(curve.part(start, end)), span.deviation, to)
+        });
+        let [start, end] = [places[from].way, places[to].way];
+        let vertices = [first + line.segment(start), first + line.segment(end) + usize::from(end >= line.length())];
+        parts.push(Part { curve, vertices, deviation, is_smooth: from > 0 });
+        if parts.len() - before >= line.points.len() {
+            // More curves than lines: the lines stay, whatever else is found.
+            return Ok(());
+        }
         guess = to - from;
         from = to;
-    }
-    for (k, ([start, end], curve, deviation)) in found.into_iter().enumerate() {
-        let vertices = [first + line.segment(start), first + line.segment(end) + usize::from(end >= line.length())];
-        parts.push(Part { curve, vertices, deviation, is_smooth: k > 0 });
     }
     Ok(())
 }
@@ -126,44 +140,48 @@ pub(super) fn fit(line: &Polyline<'_>, first: usize, tolerance: f64, parts: &mut
 /// What a curve's ends may differ in from the spline that it follows: mm, radians, and parts of the curvature.
 const FAITHFUL: [f64; 3] = [1e-10, 1e-8, 1e-7];
 
+/// Whether a curve's end is where the spline is, and goes on from it.
+fn is_faithful(found: &Local, wanted: &Local) -> bool {
+    let across = found.first.cross(wanted.first).norm();
+    let (a, b) = (found.curvature(), wanted.curvature());
+    (found.point - wanted.point).norm() < FAITHFUL[0]
+        && across < FAITHFUL[1] * found.first.dot(wanted.first)
+        && (a - b).norm() < FAITHFUL[2] * a.norm().max(b.norm()).max(STRAIGHT)
+}
+
 /// The curve between two nodes where it follows within the tolerance and goes on from its neighbours; and its deviation.
 fn between(
     line: &Polyline<'_>,
-    spline: &Bspline,
-    [start, end]: [&Node; 2],
+    [start, end]: [&(Node, Local); 2],
     ways: [f64; 2],
     tolerance: f64,
+    scratch: &mut Vec<f64>,
 ) -> Option<(Curve, f64)> {
-    let plane = hermite(start, end)?;
-    let curve = RisingPh { plane, z: rise(&plane, start, end) };
+    let plane = hermite(&start.0, &end.0)?;
+    let curve = RisingPh { plane, z: rise(&plane, &start.0, &end.0) };
     let bezier = curve.bezier();
-    let is_faithful = |t: f64, way: f64| {
-        let (found, wanted) = (bezier.at(t), spline.at(way));
-        let broken = break_between(&found, &wanted);
-        (found.point - wanted.point).norm() < FAITHFUL[0]
-            && broken.tangent < FAITHFUL[1]
-            && broken.curvature < FAITHFUL[2]
-    };
-    if !(is_faithful(0.0, ways[0]) && is_faithful(1.0, ways[1])) {
+    let deviation = across(line, &Polynomial::new(&bezier), ways, tolerance, scratch);
+    if deviation > tolerance || deviation.is_nan() {
         return None;
     }
-    let deviation = across(line, &bezier, ways, tolerance);
-    (deviation <= tolerance).then_some((Curve::Ph(curve), deviation))
+    let is_one = is_faithful(&bezier.at(0.0), &start.1) && is_faithful(&bezier.at(1.0), &end.1);
+    is_one.then_some((Curve::Ph(curve), deviation))
 }
 
 /// Where a segment may end: at the ends of the spline's spans, and at vertices that are not next to one.
-fn candidates(line: &Polyline<'_>, spline: &Bspline) -> Vec<f64> {
+fn candidates(line: &Polyline<'_>, fitted: &Fitted) -> Vec<Place> {
     /// In mm: the curvature of a shorter curve drowns in the digits of its points.
     const NEXT: f64 = 2e-3;
-    let breaks = spline.breaks();
-    let is_apart = |way: f64| {
-        let behind = breaks.partition_point(|&at| at < way);
-        let near = |at: Option<&f64>| at.is_some_and(|at| (at - way).abs() < NEXT);
-        !near(breaks.get(behind)) && !near(behind.checked_sub(1).and_then(|k| breaks.get(k)))
-    };
-    let mut ways: Vec<f64> = line.ways.iter().copied().filter(|&way| is_apart(way)).chain(breaks.to_vec()).collect();
-    ways.sort_by(f64::total_cmp);
-    ways
+    let mut places = Vec::with_capacity(line.points.len() + fitted.spans.len());
+    for (number, span) in fitted.spans.iter().enumerate() {
+        let [from, to] = span.ends;
+        places.push(Place { way: from, span: number });
+        let vertices = line.ways[line.between(from, to)].iter().copied();
+        let apart = vertices.filter(|way| way - from >= NEXT && to - way >= NEXT);
+        places.extend(apart.map(|way| Place { way, span: number }));
+    }
+    places.push(Place { way: line.length(), span: fitted.spans.len() - 1 });
+    places
 }
 
 /// Newton's steps at the most.

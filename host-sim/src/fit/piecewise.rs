@@ -3,18 +3,22 @@
 //! The ends of each cubic are vertices of the polyline, its end tangents those of the polyline there, and the lengths of its handles come from
 //! least squares. Each takes as many vertices as both conditions allow. What is straight (SA 3) stays a line.
 
-use super::conditions::{Walk, walk};
+use super::conditions::{Polynomial, Walk, walk};
 use super::corners::{Vertex, vertices};
 use super::curve::{Bezier, Cubic};
+use super::polyline::Polyline;
 use super::tangent::tangent;
 use super::vector::Vector;
 use super::{Curve, Part};
 
 /// How often handles and foot points are improved in turn.
-const ROUNDS: usize = 4;
+const ROUNDS: usize = 5;
 
 /// How many times the tolerance a first attempt may be off and still be improved.
 const HOPE: f64 = 6.0;
+
+/// The part of a way that a last stride may be.
+const FINE: usize = 32;
 
 /// A handle is at least this part of a third of the chord.
 const SHORTEST: f64 = 0.05;
@@ -27,6 +31,11 @@ const TANGENT: f64 = 0.25;
 
 /// Fits a polyline of at least two points, none repeated.
 pub(super) fn fit(points: &[Vector], tolerance: f64) -> Vec<Part> {
+    by_runs(points, tolerance, &mut |run, parts| run.fit(parts))
+}
+
+/// Fits what is curved by `fit`; what is straight (SA 3) stays a line.
+pub(super) fn by_runs(points: &[Vector], tolerance: f64, fit: &mut impl FnMut(&Run<'_>, &mut Vec<Part>)) -> Vec<Part> {
     let kinds = vertices(points, tolerance);
     let mut parts = Vec::new();
     let mut from = 0;
@@ -34,7 +43,7 @@ pub(super) fn fit(points: &[Vector], tolerance: f64) -> Vec<Part> {
         if is_straight(&kinds, from) {
             let vertices = [from, from + 1];
             // Behind a curve that ends along it.
-            let behind_curve = matches!(parts.last(), Some(Part { curve: Curve::Cubic(_), .. }));
+            let behind_curve = parts.last().is_some_and(|part: &Part| !matches!(part.curve, Curve::Line(_)));
             let is_smooth = behind_curve && kinds[from] == Vertex::Tangent { before: false };
             parts.push(Part { curve: line(points, from, from + 1), vertices, deviation: 0.0, is_smooth });
             from += 1;
@@ -43,7 +52,7 @@ pub(super) fn fit(points: &[Vector], tolerance: f64) -> Vec<Part> {
         // Up to where something straight begins, or a corner is.
         let ends = |k: &usize| kinds[*k] != Vertex::Smooth || is_straight(&kinds, *k);
         let to = (from + 1..points.len()).find(ends).unwrap_or(points.len() - 1);
-        Run::new(points, &kinds, [from, to], tolerance).fit(&mut parts);
+        fit(&Run::new(points, &kinds, [from, to], tolerance), &mut parts);
         from = to;
     }
     parts
@@ -62,13 +71,13 @@ fn line(points: &[Vector], from: usize, to: usize) -> Curve {
 }
 
 /// Vertices that lie on a curve.
-struct Run<'a> {
-    points: &'a [Vector],
+pub(super) struct Run<'a> {
+    pub line: Polyline<'a>,
     /// The number of the first of them.
-    first: usize,
+    pub first: usize,
     /// The directions that a straight neighbour gives to the ends.
-    given: [Option<Vector>; 2],
-    tolerance: f64,
+    pub given: [Option<Vector>; 2],
+    pub tolerance: f64,
 }
 
 impl<'a> Run<'a> {
@@ -78,11 +87,17 @@ impl<'a> Run<'a> {
         let start = before.and_then(|k| (all[from] - all[k]).unit());
         let behind = (to + 1 < all.len() && smooth(to) && is_straight(kinds, to)).then_some(to + 1);
         let end = behind.and_then(|k| (all[k] - all[to]).unit());
-        Self { points: &all[from..=to], first: from, given: [start, end], tolerance }
+        Self { line: Polyline::new(&all[from..=to]), first: from, given: [start, end], tolerance }
     }
 
-    fn tangent(&self, k: usize) -> Option<Vector> {
-        let last = self.points.len() - 1;
+    /// The polyline's segment behind one of them.
+    pub(super) fn segment(&self, k: usize) -> Curve {
+        line(self.line.points, k, k + 1)
+    }
+
+    /// The direction at one of them.
+    pub(super) fn tangent(&self, k: usize) -> Option<Vector> {
+        let last = self.line.points.len() - 1;
         let given = if k == 0 {
             self.given[0]
         } else if k == last {
@@ -90,11 +105,11 @@ impl<'a> Run<'a> {
         } else {
             None
         };
-        given.or_else(|| tangent(self.points, k, TANGENT * self.tolerance))
+        given.or_else(|| tangent(&self.line, k, TANGENT * self.tolerance))
     }
 
     fn fit(&self, parts: &mut Vec<Part>) {
-        let last = self.points.len() - 1;
+        let last = self.line.points.len() - 1;
         let mut feet = Vec::new();
         let (mut from, mut guess) = (0, 4);
         let mut start = self.tangent(0);
@@ -102,10 +117,10 @@ impl<'a> Run<'a> {
         while from < last {
             let mut attempt = |to: usize| {
                 let end = self.tangent(to)?;
-                let (cubic, walk) = cubic(&self.points[from..=to], [start?, end], self.tolerance, &mut feet)?;
+                let (cubic, walk) = cubic(&self.line, [from, to], [start?, end], self.tolerance, &mut feet)?;
                 Some((cubic, walk, to, end))
             };
-            let found = longest(&mut attempt, from, last, guess);
+            let found = longest(&mut attempt, from, last, guess, FINE);
             let to = match found {
                 Some((cubic, walk, to, end)) => {
                     let vertices = [self.first + from, self.first + to];
@@ -115,7 +130,7 @@ impl<'a> Run<'a> {
                 }
                 None => {
                     let vertices = [self.first + from, self.first + from + 1];
-                    let curve = line(self.points, from, from + 1);
+                    let curve = self.segment(from);
                     parts.push(Part { curve, vertices, deviation: 0.0, is_smooth: false });
                     (start, is_smooth) = (self.tangent(from + 1), false);
                     from + 1
@@ -127,15 +142,15 @@ impl<'a> Run<'a> {
     }
 }
 
-/// The longest success from `from` on that doubling and halving the stride find.
+/// The longest success from `from` on that doubling and halving the stride find. A last stride that is the `fine`th part of the way says
+/// nothing more.
 pub(super) fn longest<T>(
     attempt: &mut impl FnMut(usize) -> Option<T>,
     from: usize,
     last: usize,
     guess: usize,
+    fine: usize,
 ) -> Option<T> {
-    /// A last stride that is this part of the way says nothing more.
-    const FINE: usize = 16;
     let mut best: Option<(usize, T)> = None;
     let mut stride = guess.min(last - from);
     // Down to a success, or up to a failure.
@@ -161,7 +176,7 @@ pub(super) fn longest<T>(
     }
     let (mut reached, mut found) = best?;
     let mut beyond = failed.unwrap_or(reached + 1);
-    while beyond - reached > 1 + (reached - from) / FINE {
+    while beyond - reached > 1 + (reached - from) / fine {
         let middle = reached + (beyond - reached) / 2;
         match attempt(middle) {
             Some(better) => (reached, found) = (middle, better),
@@ -172,19 +187,22 @@ pub(super) fn longest<T>(
 }
 
 /// The cubic along a part of a run with these unit tangents at its ends. None where it breaks a condition.
-fn cubic(points: &[Vector], tangents: [Vector; 2], tolerance: f64, feet: &mut Vec<f64>) -> Option<(Cubic, Walk)> {
+fn cubic(
+    line: &Polyline<'_>,
+    [from, to]: [usize; 2],
+    tangents: [Vector; 2],
+    tolerance: f64,
+    feet: &mut Vec<f64>,
+) -> Option<(Cubic, Walk)> {
+    let ends = [line.points[from], line.points[to]];
+    let inner = &line.points[from + 1..to];
+    let inverse = 1.0 / (line.ways[to] - line.ways[from]);
     feet.clear();
-    let mut way = 0.0;
-    feet.push(0.0);
-    for pair in points.windows(2) {
-        way += (pair[1] - pair[0]).norm();
-        feet.push(way);
-    }
-    feet.iter_mut().for_each(|foot| *foot /= way);
+    feet.extend(line.ways[from + 1..to].iter().map(|way| (way - line.ways[from]) * inverse));
     let mut before = f64::INFINITY;
     for round in 0..ROUNDS {
-        let curve = handles(points, tangents, feet)?;
-        let walk = walk(&curve, points, feet, tolerance, HOPE * tolerance)?;
+        let curve = handles(ends, inner, tangents, feet)?;
+        let walk = walk(&Polynomial::new(&curve), ends, inner, feet, tolerance, HOPE * tolerance)?;
         if walk.deviation <= tolerance {
             return Some((curve, walk));
         }
@@ -199,12 +217,11 @@ fn cubic(points: &[Vector], tangents: [Vector; 2], tolerance: f64, feet: &mut Ve
 }
 
 /// Least squares of the two handles.
-fn handles(points: &[Vector], [start, end]: [Vector; 2], feet: &[f64]) -> Option<Cubic> {
-    let (first, last) = (points[0], points[points.len() - 1]);
+fn handles([first, last]: [Vector; 2], inner: &[Vector], [start, end]: [Vector; 2], feet: &[f64]) -> Option<Cubic> {
     let chord = (last - first).norm();
     let along = start.dot(end);
     let (mut aa, mut ab, mut bb, mut ra, mut rb) = (0.0, 0.0, 0.0, 0.0, 0.0);
-    for (point, &t) in points.iter().zip(feet) {
+    for (point, &t) in inner.iter().zip(feet) {
         let s = 1.0 - t;
         let (b1, b2) = (3.0 * s * s * t, 3.0 * s * t * t);
         let off = *point - first.toward(last, t * t * (3.0 - 2.0 * t));

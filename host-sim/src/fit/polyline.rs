@@ -7,6 +7,9 @@ use super::vector::Vector;
 pub(super) struct Polyline<'a> {
     pub points: &'a [Vector],
     pub ways: Vec<f64>,
+    /// The first and the second derivative by the way that a curve must have at the start and at the end, where something is given: closed
+    /// loops go on there.
+    pub held: [Option<[Vector; 2]>; 2],
 }
 
 impl<'a> Polyline<'a> {
@@ -17,7 +20,7 @@ impl<'a> Polyline<'a> {
             way += if k > 0 { (*point - points[k - 1]).norm() } else { 0.0 };
             ways.push(way);
         }
-        Self { points, ways }
+        Self { points, ways, held: [None; 2] }
     }
 
     pub(super) fn length(&self) -> f64 {
@@ -29,8 +32,8 @@ impl<'a> Polyline<'a> {
         self.ways.partition_point(|&at| at <= way).clamp(1, self.points.len() - 1) - 1
     }
 
-    pub(super) fn at(&self, way: f64) -> Vector {
-        let k = self.segment(way);
+    /// The point at a way that ends on segment `k`.
+    pub(super) fn on(&self, k: usize, way: f64) -> Vector {
         let step = self.ways[k + 1] - self.ways[k];
         self.points[k].toward(self.points[k + 1], ((way - self.ways[k]) / step).clamp(0.0, 1.0))
     }

@@ -22,7 +22,9 @@ pub(super) fn even(piece: &PathPiece) -> Vec<PathPiece> {
     let mut parts = Vec::new();
     let mut stack = vec![(piece.interval, 0)];
     while let Some(([from, to], halvings)) = stack.pop() {
-        if halvings == HALVINGS || fluctuation(&spline, piece.height, from, to).is_some_and(|found| found <= FLUCTUATION) {
+        if halvings == HALVINGS
+            || fluctuation(&spline, piece.height, from, to).is_some_and(|found| found <= FLUCTUATION)
+        {
             parts.push(piece.over([from, to]));
         } else {
             let middle = 0.5 * (from + to);

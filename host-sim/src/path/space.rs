@@ -144,7 +144,10 @@ mod tests {
                 let way = |a: f64, b: f64| piece.way_to(b) - piece.way_to(a);
                 let chord = |a: f64, b: f64| (point(piece, b) - point(piece, a)) * (1.0 / way(a, b));
                 let rate = chord(xi - H, xi + H);
-                assert!((rate - direction * stretch).norm() < 1e-6, "{number} at {xi}: {rate:?} {direction:?} {stretch}");
+                assert!(
+                    (rate - direction * stretch).norm() < 1e-6,
+                    "{number} at {xi}: {rate:?} {direction:?} {stretch}"
+                );
                 let turn = piece.space(xi + H).direction - piece.space(xi - H).direction;
                 let turn = turn * (1.0 / (way(xi - H, xi + H) * stretch));
                 assert!((turn - bend).norm() < 1e-5, "{number} at {xi}: {turn:?} {bend:?}");

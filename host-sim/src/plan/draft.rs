@@ -185,8 +185,12 @@ impl Draft {
         // The time is the window or a little more.
         let time = (last.time - first.time).max(JERK_WINDOW);
         let change = last.acceleration[1] - first.acceleration[0];
-        let asked =
-            change.0.into_iter().zip(limits.jerk).map(|(change, jerk)| change.abs() / (jerk * time)).fold(0.0, f64::max);
+        let asked = change
+            .0
+            .into_iter()
+            .zip(limits.jerk)
+            .map(|(change, jerk)| change.abs() / (jerk * time))
+            .fold(0.0, f64::max);
         if asked > 1.0 + MIDDLE_JERK {
             for over in &mut over[first.place..=last.place] {
                 *over = over.max(asked);

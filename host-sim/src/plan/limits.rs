@@ -59,9 +59,7 @@ impl Limits {
         let moves = |piece: &PathPiece| piece.height.is_some_and(|height| !height.is_level());
         let mut limits = *self;
         if !pieces.iter().any(moves) {
-            for of_axes in
-                [&mut limits.velocity, &mut limits.acceleration, &mut limits.jerk, &mut limits.corner_step]
-            {
+            for of_axes in [&mut limits.velocity, &mut limits.acceleration, &mut limits.jerk, &mut limits.corner_step] {
                 of_axes[2] = f64::INFINITY;
             }
         }

@@ -81,7 +81,8 @@ pub fn read(name: &str, input: impl BufRead, sink: Sink<'_>) -> Result<Vec<drawi
         Some(Language::Sinumerik) => sinumerik::read(name, input, &sinumerik::Settings::default(), sink),
         Some(Language::Apt) => apt::read(name, input, Units::Mm, sink),
         None => {
-            let message = "has no ending of a program or a drawing; .nc .ngc .gcode .tap .mpf .spf .apt .cls .svg .dxf are";
+            let message =
+                "has no ending of a program or a drawing; .nc .ngc .gcode .tap .mpf .spf .apt .cls .svg .dxf are";
             Err(InputError::new(name, message))
         }
     };

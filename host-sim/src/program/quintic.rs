@@ -48,14 +48,7 @@ pub fn quintics(curve: impl Fn(f64) -> Jet) -> Vec<Quintic> {
 /// The quintic with these ends over a parameter interval of this width.
 fn hermite([p, p1, p2]: Jet, [q, q1, q2]: Jet, width: f64) -> Quintic {
     let (first, second) = (width / 5.0, width * width / 20.0);
-    [
-        p,
-        p + p1 * first,
-        p + p1 * (2.0 * first) + p2 * second,
-        q - q1 * (2.0 * first) + q2 * second,
-        q - q1 * first,
-        q,
-    ]
+    [p, p + p1 * first, p + p1 * (2.0 * first) + p2 * second, q - q1 * (2.0 * first) + q2 * second, q - q1 * first, q]
 }
 
 /// A point of a quintic.
@@ -173,11 +166,10 @@ mod tests {
         let quarter = [[50.0, 0.0, 0.0, 1.0], [50.0 * half, 50.0 * half, 0.0, half], [0.0, 50.0, 0.0, 1.0]];
         let upright = Arc { plane: Plane::Zx, centre: [3.0, -40.0], to: [-40.0, 2.0, 53.0], sweep: TAU, turns: 0 };
         let spiral = Arc { plane: Plane::Xy, centre: [0.0, 0.0], to: [0.0, 9.5, 1.0], sweep: PI / 2.0, turns: 0 };
-        let curves: [&dyn Fn(f64) -> Jet; 3] = [
-            &|at| rational(&quarter, at),
-            &|at| arc(&upright, [-40.0, 2.0, 53.0], at),
-            &|at| arc(&spiral, [9.0, 0.0, 0.0], at),
-        ];
+        let curves: [&dyn Fn(f64) -> Jet; 3] =
+            [&|at| rational(&quarter, at), &|at| arc(&upright, [-40.0, 2.0, 53.0], at), &|at| {
+                arc(&spiral, [9.0, 0.0, 0.0], at)
+            }];
         for (number, curve) in curves.into_iter().enumerate() {
             let found = quintics(curve);
             let exact: Vec<Vector> = (0..=20_000).map(|k| curve(f64::from(k) / 2e4)[0]).collect();

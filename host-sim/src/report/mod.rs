@@ -3,6 +3,7 @@
 //! | module | what |
 //! | --- | --- |
 //! | `simulation`, `plan`, `reproduction`, `feed_correction`, `spline_fit` | the reports: what stands in which order, and the sentences between |
+//! | `fitting` | lines before and curves after |
 //! | `figures`, `plan_figures` | one function for each kind of picture |
 //! | `limited`, `causes` | what limits a plan and where; how that is named and coloured |
 //! | `tables` | published tables beside what came out here |
@@ -15,6 +16,7 @@ mod causes;
 mod chart;
 mod feed_correction;
 mod figures;
+mod fitting;
 mod geometry;
 mod leftover;
 mod limited;
@@ -37,6 +39,7 @@ use crate::path::Path;
 use crate::simulate::Sample;
 
 pub use feed_correction::feed_correction;
+pub use fitting::Fitted;
 pub use plan::plan;
 pub use reproduction::reproduction;
 pub use simulation::simulation;
@@ -74,4 +77,9 @@ pub fn picture(job: &Job, path: &Path, samples: &[Sample]) -> Result<String, Rep
 /// The trimming of a contour as an SVG file: contour, untrimmed and trimmed offset, trim points, and what the tool leaves.
 pub fn offset_picture(part: &Part, offset: &Offset, undercuts: &[Undercut]) -> Result<String, ReportError> {
     Ok(figures::trimming(part, offset, undercuts)?.file())
+}
+
+/// A fit as an SVG file: the lines and the curves, whole and near where most lines meet. Errors: there is nothing to draw.
+pub fn fit_picture(fitted: &Fitted) -> Result<String, ReportError> {
+    Ok(fitting::fitting(fitted)?.file())
 }

@@ -77,7 +77,11 @@ pub fn spline_fit(result: &Reproduction) -> Result<String, ReportError> {
     }
     page.heading("The whole program");
     let strips = [of(Way::Cubics)?, of(Way::Ph)?];
-    page.figure(&[whole(&strips)?], Layout::Single, "As the paper\u{2019}s figure 15: the feed over the time of the whole program.");
+    page.figure(
+        &[whole(&strips)?],
+        Layout::Single,
+        "As the paper\u{2019}s figure 15: the feed over the time of the whole program.",
+    );
     Ok(page.finish())
 }
 
@@ -167,12 +171,7 @@ fn coloured(run: &Run, most: f64) -> Result<Picture, ReportError> {
 }
 
 /// A value over the time of the fillet, way by way.
-fn over_time(
-    runs: &[&Run],
-    quantity: &str,
-    stroke: Stroke,
-    value: fn(&Moment) -> f64,
-) -> Result<Picture, ReportError> {
+fn over_time(runs: &[&Run], quantity: &str, stroke: Stroke, value: fn(&Moment) -> f64) -> Result<Picture, ReportError> {
     let longest = runs.iter().map(|run| run.fillet_time_s).fold(0.0, f64::max);
     let strips = runs.iter().map(|run| {
         let moments: Vec<&Moment> = run.moments.iter().filter(|moment| in_fillet(moment.at)).collect();
@@ -227,8 +226,16 @@ fn table(head: &[&str], rows: impl Iterator<Item = Vec<String>>) -> String {
 }
 
 fn runs(result: &Reproduction) -> String {
-    let head =
-        ["", "curves", "time, s", "% of exact stop", "corners", "curvature jumps", "smooth nodes", "least feed at the fillet, mm/s"];
+    let head = [
+        "",
+        "curves",
+        "time, s",
+        "% of exact stop",
+        "corners",
+        "curvature jumps",
+        "smooth nodes",
+        "least feed at the fillet, mm/s",
+    ];
     let row = |run: &Run| {
         vec![
             run.name.to_string(),

@@ -8,8 +8,8 @@ use shared::spline::CorrectionOrder;
 
 use super::rounding::{Rounded, rounded};
 use super::{Entry, Event, Pace, Stroke, What};
-use crate::fit::{Curve, Kind, fit};
 use crate::fit::program::Step;
+use crate::fit::{Curve, Kind, fit};
 use crate::height::Height;
 use crate::program::item::{Compensation, PathMode};
 use crate::program::quintic::{self, Quintic, quintics};
@@ -139,6 +139,7 @@ impl Strokes {
                 let all = cubic.points.map(|Vector([x, y, z])| [x, y, z, 1.0]);
                 self.quintics(&quintics(|at| quintic::rational(&all, at)), of);
             }
+            Curve::Arc(arc) => self.arc(&arc.motion(), arc.start.0, of),
             Curve::Ph(ph) => {
                 let points = ph.bezier().points;
                 let [.., z] = points[0].0;
@@ -215,8 +216,7 @@ impl Strokes {
             let curve = Spline { points: points.map(flat), correction: CorrectionOrder::default() };
             let heights = points.map(|Vector([_, _, z])| z);
             let is_flat = heights.iter().all(|z| (z - heights[0]).abs() <= LEVEL);
-            let height =
-                if is_flat { Height::level(heights[0]) } else { Height::Bezier(heights) };
+            let height = if is_flat { Height::level(heights[0]) } else { Height::Bezier(heights) };
             self.push(Segment::Spline(curve), height, of);
         }
     }

@@ -17,8 +17,8 @@ use shared::curve::Segment;
 use crate::height::Height;
 
 pub use builder::Strokes;
-pub use read::{Lines, read};
 pub use event::{Event, What};
+pub use read::{Lines, read};
 
 /// How fast a stroke is.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -82,11 +82,15 @@ mod tests {
     #[test]
     fn a_right_angle_has_its_arc() {
         let points = [[0.0, 0.0, 1.0], [10.0, 0.0, 1.0], [10.0, 10.0, 1.0]].map(Vector);
-        let [Rounded::Line(_), Rounded::Arc { ends, centre, angle }, Rounded::Line(_)] = rounded(&points, 0.1)[..] else {
+        let [Rounded::Line(_), Rounded::Arc { ends, centre, angle }, Rounded::Line(_)] = rounded(&points, 0.1)[..]
+        else {
             panic!("other parts")
         };
         let radius = (ends[0] - centre).norm();
-        assert!((radius - 0.1 / (2.0_f64.sqrt() - 1.0)).abs() < 1e-12 && (angle - std::f64::consts::FRAC_PI_2).abs() < 1e-12);
+        assert!(
+            (radius - 0.1 / (2.0_f64.sqrt() - 1.0)).abs() < 1e-12
+                && (angle - std::f64::consts::FRAC_PI_2).abs() < 1e-12
+        );
         assert!(((points[1] - centre).norm() - radius - 0.1).abs() < 1e-12);
         assert!(((ends[1] - centre).norm() - radius).abs() < 1e-12);
     }

@@ -10,8 +10,8 @@ use clap::{Args, ValueEnum};
 use host_sim::input::InputError;
 use host_sim::report::{self, ReportError};
 use host_sim::reproduce::farouki2018::{REDUCTIONS, WEIGHTS, reproduce as farouki};
-use host_sim::reproduce::spline_fit as spline;
 use host_sim::reproduce::feed_correction::{Airfoil, STEPS, reproduce as feed_correction};
+use host_sim::reproduce::spline_fit as spline;
 use serde::Serialize;
 
 use super::Failure;

@@ -4,14 +4,8 @@ use host_sim::reproduce::spline_fit::Reproduction;
 
 /// The ways beside each other, and what the paper found.
 pub fn print(result: &Reproduction) {
-    println!(
-        "a plate at four levels, {} lines, {} mm/s, within {} mm",
-        result.lines, result.feed, result.tolerance
-    );
-    println!(
-        "{:30}{:>8}{:>9}{:>8}{:>9}{:>9}{:>16}",
-        "", "curves", "time, s", "%", "corners", "jumps", "fillet, mm/s"
-    );
+    println!("a plate at four levels, {} lines, {} mm/s, within {} mm", result.lines, result.feed, result.tolerance);
+    println!("{:30}{:>8}{:>9}{:>8}{:>9}{:>9}{:>16}", "", "curves", "time, s", "%", "corners", "jumps", "fillet, mm/s");
     for run in &result.runs {
         println!(
             "{:30}{:>8}{:>9.3}{:>8.1}{:>9}{:>9}{:>16.1}",

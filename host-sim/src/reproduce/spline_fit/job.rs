@@ -48,9 +48,11 @@ fn wave(points: &mut Vec<[f64; 2]>, [x, y]: [f64; 2], length: f64) {
     let most = 0.5 * HEIGHT * (TAU * WAVES / length).powi(2);
     // A chord over a way w is off by kappa w^2/8.
     let count = (length / (8.0 * CHORD_MM / most).sqrt()).ceil() as u32;
-    points.extend((0..=count).map(|k| f64::from(k) / f64::from(count)).map(|part| {
-        [x - 0.5 * HEIGHT * (1.0 - (TAU * WAVES * part).cos()), y + length * part]
-    }));
+    points.extend(
+        (0..=count)
+            .map(|k| f64::from(k) / f64::from(count))
+            .map(|part| [x - 0.5 * HEIGHT * (1.0 - (TAU * WAVES * part).cos()), y + length * part]),
+    );
 }
 
 /// The program in RS-274.

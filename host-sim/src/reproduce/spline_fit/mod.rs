@@ -172,9 +172,12 @@ fn claims(runs: &[Run]) -> Vec<Claim> {
         ratio("time: published cubics to micro arcs with look-ahead", Way::Cubics, Way::LookAhead, time),
         ratio("time: continuous curvature to published cubics", Way::Bsplines, Way::Cubics, time),
         ratio("time: PH to published cubics", Way::Ph, Way::Cubics, time),
-        ratio("least feed at the fillet: published cubics to continuous curvature", Way::Cubics, Way::Bsplines, |run| {
-            run.fillet_least_feed
-        }),
+        ratio(
+            "least feed at the fillet: published cubics to continuous curvature",
+            Way::Cubics,
+            Way::Bsplines,
+            |run| run.fillet_least_feed,
+        ),
     ]
 }
 

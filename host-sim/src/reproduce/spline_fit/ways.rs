@@ -53,7 +53,7 @@ impl Way {
         match self {
             Self::ExactStop => Lines::Kept,
             Self::MicroArcs | Self::LookAhead => Lines::Rounded(TOLERANCE_MM),
-            Self::Arcs => Lines::Rounded(TOLERANCE_MM),
+            Self::Arcs => Lines::Fitted(Kind::Arcs, TOLERANCE_MM),
             Self::Cubics => Lines::Fitted(Kind::Bezier, TOLERANCE_MM),
             Self::Bsplines => Lines::Fitted(Kind::Bspline, TOLERANCE_MM),
             Self::Ph => Lines::Fitted(Kind::Ph, TOLERANCE_MM),
