@@ -18,7 +18,7 @@
 
 pub mod apt;
 mod arc;
-mod bspline;
+pub(crate) mod bspline;
 pub mod drawing;
 pub mod item;
 mod lines;
