@@ -5,7 +5,7 @@ use shared::curve::{Curve as _, Segment};
 use super::Point;
 use super::chain::{Chain, Event};
 use super::error::{CompensationError, Warning};
-use super::follow::{Bit, Course, follow};
+use super::follow::{Bit, Course, Way, follow};
 use super::lead::{self, First};
 use super::piece::CentrePiece;
 use super::run::{Lead, Run};
@@ -77,7 +77,7 @@ pub(super) fn of(run: &mut Run) -> Result<Option<Centre>, CompensationError> {
     let distance = *distance;
     let mut course = Course::default();
     if !chain.links.is_empty() {
-        course = follow(chain, distance).map_err(|(fault, link)| {
+        course = follow(chain, Way { distance, from: lead.way.from }).map_err(|(fault, link)| {
             let place = chain.links.get(link).map_or(lead.heading.place, |link| link.place);
             CompensationError { fault, place }
         })?;

@@ -3,11 +3,18 @@
 use rstar::primitives::GeomWithData;
 use rstar::{AABB, RTree};
 use shared::complex::Complex;
-use shared::curve::{Curve as _, Segment};
+use shared::curve::{Curve as _, Line, Segment};
 
-use super::curves::{SAME, split};
+use super::curves::{SAME, arc_over, split};
 use crate::contour::Contour;
 use crate::program::{Feed, Item};
+
+/// Places of the contour that are nearer to each other than this, in mm, are one if the way between them is much longer: programs have
+/// three or four decimals, and a point within a line or an arc cannot be written more exactly.
+const NEAR: f64 = 1e-3;
+
+/// How many times [`NEAR`] is much longer.
+const LONGER: f64 = 16.0;
 
 /// A segment of the contour.
 #[derive(Clone, Copy, Debug)]
@@ -73,13 +80,34 @@ impl Chain {
                 nodes.locate_in_envelope(bounds(&curve)).filter_map(|node| passes(&curve, point(node))).collect();
             cuts.sort_by(f64::total_cmp);
             let length = curve.length();
-            cuts.dedup_by(|b, a| (*b - *a) * length <= SAME);
+            cuts.dedup_by(|b, a| (*b - *a) * length <= NEAR);
             // From the end on, so that what is left begins at 0.
             let mut left = 1.0;
             for cut in cuts.into_iter().rev() {
                 self.split(number, cut / left);
                 left = cut;
             }
+        }
+    }
+
+    /// Whether a link runs over another one again, in the same direction; if so it is made the same to the last digit.
+    pub fn run_again(&mut self, number: usize, other: usize) -> bool {
+        let (Some(one), Some(other)) = (self.links.get(number), self.links.get(other)) else { return false };
+        let curve = other.curve;
+        let is_again = [0.0, 0.5, 1.0].iter().all(|&xi| (one.curve.point(xi) - curve.point(xi)).norm() <= 2.0 * NEAR);
+        if is_again {
+            self.links[number].curve = curve;
+            if let Some(next) = self.links.get_mut(number + 1) {
+                next.curve = with_ends(&next.curve, curve.point(1.0), next.curve.point(1.0));
+            }
+        }
+        is_again
+    }
+
+    /// Makes the end of a round meet its start to the last digit.
+    pub fn close_round(&mut self, start: usize, end: usize) {
+        if let (Some(node), Some(last)) = (self.node(start), self.links.get_mut(end - 1)) {
+            last.curve = with_ends(&last.curve, last.curve.point(0.0), node);
         }
     }
 
@@ -102,10 +130,15 @@ impl Chain {
     /// The two nodes, from `from` to `to`, between which the chain first comes back to itself.
     pub fn first_loop(&self, from: usize, to: usize) -> Option<[usize; 2]> {
         let nodes = self.nodes();
+        let mut ways = vec![0.0; to + 1];
+        for link in from..to {
+            ways[link + 1] = ways[link] + self.links[link].curve.length();
+        }
         (from + 1..=to).find_map(|end| {
             let at = self.node(end)?;
-            let near = nodes.locate_within_distance([at.re, at.im], SAME * SAME).map(|node| node.data);
-            near.filter(|&start| start >= from && start < end).max().map(|start| [start, end])
+            let near = nodes.locate_within_distance([at.re, at.im], NEAR * NEAR).map(|node| node.data);
+            let is_before = |&start: &usize| start >= from && start < end && ways[end] - ways[start] > LONGER * NEAR;
+            near.filter(is_before).max().map(|start| [start, end])
         })
     }
 }
@@ -116,6 +149,15 @@ type Node = GeomWithData<[f64; 2], usize>;
 fn point(node: &Node) -> Complex<f64> {
     let &[x, y] = node.geom();
     Complex::new(x, y)
+}
+
+/// A line or an arc with ends that are moved a little; other curves as they are.
+fn with_ends(curve: &Segment<f64>, start: Complex<f64>, end: Complex<f64>) -> Segment<f64> {
+    match curve {
+        Segment::Line(_) => Segment::Line(Line { start, end }),
+        Segment::Arc(arc) => Segment::Arc(arc_over(start, end, arc.sweep)),
+        Segment::Ph(_) | Segment::Spline(_) => *curve,
+    }
 }
 
 /// A box around a segment.
@@ -134,7 +176,7 @@ fn bounds(curve: &Segment<f64>) -> AABB<[f64; 2]> {
     let (low, high) = points.iter().fold(([far; 2], [-far; 2]), |(low, high), p| {
         ([p.re.min(low[0]), p.im.min(low[1])], [p.re.max(high[0]), p.im.max(high[1])])
     });
-    AABB::from_corners(low.map(|x| x - SAME), high.map(|x| x + SAME))
+    AABB::from_corners(low.map(|x| x - NEAR), high.map(|x| x + NEAR))
 }
 
 /// The parameter at which a line or an arc passes through a point, but for its ends.
@@ -143,9 +185,9 @@ fn passes(curve: &Segment<f64>, at: Complex<f64>) -> Option<f64> {
         return None;
     }
     let xi = nearest(curve, at);
-    let margin = SAME / curve.length();
+    let margin = NEAR / curve.length();
     let is_inside = xi > margin && xi < 1.0 - margin;
-    (is_inside && (curve.point(xi) - at).norm() <= SAME).then_some(xi)
+    (is_inside && (curve.point(xi) - at).norm() <= NEAR).then_some(xi)
 }
 
 /// The parameter of a segment's point that is nearest to another one, which is near.

@@ -4,7 +4,7 @@
 //! runs over its start again, and an arc leads out. What leads in lies on the tool's side, so it must not hold up the tool at the end of
 //! the round. The chain is therefore taken apart where it comes back to itself first:
 //!
-//! - the round, a closed contour, is trimmed as such;
+//! - the round, a closed contour, is trimmed as such, and run again as far as the chain runs over it again;
 //! - what leads to it is trimmed together with the first half of the round, and the path changes over to that of the round at the first
 //!   place that is on both;
 //! - what follows is trimmed together with the second half, and the path changes over at the last place on both. It may come back to
@@ -12,6 +12,7 @@
 //!
 //! Changing over is exact: the same part of the same segment's offset is in both. A true crossing is made a node first.
 
+use shared::complex::Complex;
 use shared::curve::{Arc, Curve as _, Segment};
 
 use super::chain::Chain;
@@ -53,15 +54,24 @@ const CLOSE: f64 = 1e-9;
 
 /// Why a chain is not followed: it crosses itself, or for good.
 enum Halt {
-    Crossing { links: [usize; 2], at: shared::complex::Complex<f64> },
+    Crossing { links: [usize; 2], at: Complex<f64> },
     Failed(Failure),
 }
 
+/// What is the same for all parts of a chain.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Way {
+    /// The signed distance of the centre.
+    pub distance: f64,
+    /// Where the tool comes from.
+    pub from: Complex<f64>,
+}
+
 /// Follows a chain of at least one link at a signed distance; links are split where the chain meets itself.
-pub(super) fn follow(chain: &mut Chain, distance: f64) -> Result<Course, Failure> {
+pub(super) fn follow(chain: &mut Chain, way: Way) -> Result<Course, Failure> {
     chain.split_at_nodes();
     for _ in 0..CROSSINGS {
-        match part(chain, 0, chain.links.len(), distance) {
+        match part(chain, [0, chain.links.len()], Need::Both, way) {
             Ok(course) => return Ok(course),
             Err(Halt::Failed(failure)) => return Err(failure),
             Err(Halt::Crossing { links: [one, other], at }) => {
@@ -76,21 +86,35 @@ pub(super) fn follow(chain: &mut Chain, distance: f64) -> Result<Course, Failure
     Err((Fault::Tangle, 0))
 }
 
-fn part(chain: &Chain, from: usize, to: usize, distance: f64) -> Result<Course, Halt> {
+/// Which of its ends a part of the path has to have. The other one is only there so that the path may change over.
+#[derive(Clone, Copy, PartialEq)]
+enum Need {
+    Start,
+    End,
+    Both,
+}
+
+fn part(chain: &mut Chain, [from, to]: [usize; 2], need: Need, way: Way) -> Result<Course, Halt> {
     let Some([start, end]) = chain.first_loop(from, to) else {
-        return trimmed(chain, from, to, false, distance);
+        return trimmed(chain, [from, to], false, need, way);
     };
-    let middle = start + (end - start).div_ceil(2);
-    let mut course = trimmed(chain, start, end, true, distance)?;
+    let count = end - start;
+    chain.close_round(start, end);
+    // As far as the chain runs over the round again, the path does, too.
+    let again = (end..to).take_while(|&link| chain.run_again(link, start + (link - start) % count)).count();
+    let reach = end + again;
+    let mut course = trimmed(chain, [start, end], true, Need::Both, way)?;
+    course.go_on(count, reach);
     course.begins_with_round = start == from;
-    course.ends_with_round = end == to;
+    course.ends_with_round = reach == to && again % count == 0;
     if start > from {
-        let lead = trimmed(chain, from, middle, false, distance)?;
-        course = joined(lead, course, Change::First).ok_or_else(|| apart(start, distance))?;
+        let middle = start + count.div_ceil(2);
+        let lead = trimmed(chain, [from, middle], false, Need::Start, way)?;
+        course = joined(lead, course, Change::First).ok_or_else(|| apart(start, way.distance))?;
     }
-    if end < to {
-        let rest = part(chain, middle, to, distance)?;
-        course = joined(course, rest, Change::Last).ok_or_else(|| apart(end, distance))?;
+    if reach < to {
+        let rest = part(chain, [reach - count / 2, to], Need::End, way)?;
+        course = joined(course, rest, Change::Last).ok_or_else(|| apart(reach - 1, way.distance))?;
     }
     Ok(course)
 }
@@ -100,25 +124,38 @@ fn apart(link: usize, distance: f64) -> Halt {
 }
 
 /// The part of a trimmed offset that leads along a part of the chain from its start to its end.
-fn trimmed(chain: &Chain, from: usize, to: usize, closed: bool, distance: f64) -> Result<Course, Halt> {
+fn trimmed(chain: &Chain, [from, to]: [usize; 2], closed: bool, need: Need, way: Way) -> Result<Course, Halt> {
+    let distance = way.distance;
     let contour = chain.contour(from, to, closed);
     let offset = trim(&contour, distance).map_err(|error| halt(error, from, distance))?;
     let loops = offset.loops.iter().filter(|l| l.closed == closed);
     let ends = |l: &Loop| {
-        let ends = l.pieces.iter().filter_map(|piece| match piece.along {
-            Along::Segment { segment, from, to } => Some([segment as f64 + from, segment as f64 + to]),
-            Along::Fill { .. } => None,
+        let ends = l.pieces.iter().map(|piece| match piece.along {
+            Along::Segment { segment, from, to } => [segment as f64 + from, segment as f64 + to],
+            // Where a round closes it also begins.
+            Along::Fill { node, .. } if closed && node + 1 == to - from => [0.0, (to - from) as f64],
+            Along::Fill { node, .. } => [(node + 1) as f64; 2],
         });
         ends.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], [from, to]| [a.min(from), b.max(to)])
     };
-    let first = loops.clone().min_by(|a, b| ends(a)[0].total_cmp(&ends(b)[0]));
-    let last = loops.max_by(|a, b| ends(a)[1].total_cmp(&ends(b)[1]));
+    // Where the arc about the start of a round is kept in parts, several loops have one: that on the side where the tool comes from is run.
+    let off = |l: &Loop| {
+        let parts =
+            l.pieces.iter().filter(|piece| matches!(piece.along, Along::Fill { node, .. } if node + 1 == to - from));
+        let middles = parts.map(|piece| ((piece.start + piece.end) * 0.5 - way.from).norm());
+        if closed { middles.fold(f64::INFINITY, f64::min) } else { 0.0 }
+    };
+    let nearer = |a: &&Loop, b: &&Loop| off(a).total_cmp(&off(b));
+    let first = loops.clone().min_by(|a, b| ends(a)[0].total_cmp(&ends(b)[0]).then(nearer(a, b)));
+    let last = loops.min_by(|a, b| ends(b)[1].total_cmp(&ends(a)[1]).then(nearer(a, b)));
     let (Some(first), Some(last)) = (first, last) else { return Err(apart(from, distance)) };
-    if !std::ptr::eq(first, last) {
-        return Err(apart(from, distance));
-    }
-    let bits = bits(&contour, first, from, distance);
-    let run = Offset { distance, loops: vec![first.clone()] };
+    let run = match need {
+        Need::Both if !std::ptr::eq(first, last) => return Err(apart(from, distance)),
+        Need::Both | Need::Start => first,
+        Need::End => last,
+    };
+    let bits = bits(&contour, run, from, distance);
+    let run = Offset { distance, loops: vec![run.clone()] };
     let left = undercuts(&contour, &run).into_iter().map(|undercut| {
         let (segment, xi) = undercut.from;
         ((from + segment) as f64 + xi, warning(chain, &undercut, [from, to], distance))
@@ -139,7 +176,7 @@ fn halt(error: OffsetError, from: usize, distance: f64) -> Halt {
     Halt::Failed((Fault::Offset { error, distance }, from + link))
 }
 
-/// A loop in order along the chain. The arc about the node at which a round closes is left out: nothing follows it there.
+/// A loop in order along the chain.
 fn bits(contour: &Contour, run: &Loop, base: usize, distance: f64) -> Vec<Bit> {
     let bit = |along: Along| match along {
         Along::Segment { segment, from, to } => {
@@ -153,11 +190,11 @@ fn bits(contour: &Contour, run: &Loop, base: usize, distance: f64) -> Vec<Bit> {
     };
     let mut bits: Vec<Bit> = run.pieces.iter().filter_map(|piece| bit(piece.along)).collect();
     if run.closed {
-        let along = |bit: &Bit| if bit.fill.is_some() { f64::INFINITY } else { bit.at[0] };
-        let first = (0..bits.len()).min_by(|&a, &b| along(&bits[a]).total_cmp(&along(&bits[b])));
+        // An arc about a node comes before the link behind it.
+        let key = |bit: &Bit| (bit.at[0], bit.fill.is_none());
+        let before = |a: &Bit, b: &Bit| key(a).0.total_cmp(&key(b).0).then(key(a).1.cmp(&key(b).1));
+        let first = (0..bits.len()).min_by(|&a, &b| before(&bits[a], &bits[b]));
         bits.rotate_left(first.unwrap_or(0));
-        let end = (base + contour.segments.len()) as f64;
-        bits.retain(|bit| bit.fill.is_none() || bit.at[0] < end);
     }
     bits
 }
@@ -220,6 +257,23 @@ fn joined(before: Course, behind: Course, change: Change) -> Option<Course> {
         begins_with_round: before.begins_with_round && change == Change::Last,
         ends_with_round: behind.ends_with_round,
     })
+}
+
+impl Course {
+    /// Makes more of a round of so many links, up to a node. An arc about that node is left out: nothing follows it.
+    fn go_on(&mut self, count: usize, reach: usize) {
+        let once = std::mem::take(&mut self.bits);
+        for round in 0.. {
+            let shift = round * count;
+            let bits =
+                once.iter().map(|bit| Bit { at: bit.at.map(|at| at + shift as f64), link: bit.link + shift, ..*bit });
+            let before = self.bits.len();
+            self.bits.extend(bits.filter(|bit| bit.link + usize::from(bit.fill.is_some()) < reach));
+            if self.bits.len() == before {
+                break;
+            }
+        }
+    }
 }
 
 impl Bit {
