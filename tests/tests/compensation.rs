@@ -302,6 +302,79 @@ proptest! {
     }
 }
 
+/// A pocket around the origin, begun and left on quarter circles at the point of its wall that is nearest to the origin, and some of it run
+/// again; none where that is a corner.
+fn led_round(seed: u64) -> Option<(String, Vec<[Complex<f64>; 2]>, f64)> {
+    let mut random = Random::new(seed);
+    let corners = polygon(&mut random);
+    let sides: Vec<_> = (0..corners.len()).map(|k| [corners[k], corners[(k + 1) % corners.len()]]).collect();
+    let feet = sides.iter().map(|&side| foot(Complex::ZERO, side)).enumerate();
+    let (side, start) = feet.min_by(|(_, a), (_, b)| a.norm().total_cmp(&b.norm()))?;
+    let ahead = sides[side][1] - start;
+    let free = start.norm();
+    if ahead.norm() < 0.1 * free || (start - sides[side][0]).norm() < 0.1 * free {
+        return None;
+    }
+    let (tangent, normal) = (ahead * (1.0 / ahead.norm()), start * (-1.0 / free));
+    let lead = free * random.within(0.05, 0.33);
+    let radius = lead * random.within(0.05, 0.95);
+    let again = random.pick(&[0.0, (0.3 * free).min(0.9 * ahead.norm())]);
+    // Further on the arc that leads out may hit a wall of its own accord.
+    let is_clear = |again: f64| {
+        (0..=40).all(|k| {
+            let (sine, cosine) = (f64::from(k) / 40.0 * std::f64::consts::FRAC_PI_2).sin_cos();
+            let off = normal * (lead - (lead - radius) * cosine) + tangent * ((lead - radius) * sine);
+            let at = start + tangent * again + off;
+            sides.iter().all(|side| (foot(at, *side) - at).norm() > radius - 1e-9)
+        })
+    };
+    let again = if is_clear(again) { again } else { 0.0 };
+    let word = |p: Complex<f64>| format!("x{:.6} y{:.6}", p.re, p.im);
+    let diameter = (2e6 * radius).round() / 1e6;
+    let by =
+        |centre: Complex<f64>, from: Complex<f64>| format!("i{:.6} j{:.6}", centre.re - from.re, centre.im - from.im);
+    let (before, centre) = (start + (normal - tangent) * lead, start + normal * lead);
+    let mut program = format!("g21 f600\ng0 x0 y0\ng41.1 d{diameter} g1 {}\n", word(before));
+    program.push_str(&format!("g3 {} {}\ng1 ", word(start), by(centre, before)));
+    for k in 1..=corners.len() {
+        program.push_str(&format!("{}\n", word(corners[(side + k) % corners.len()])));
+    }
+    program.push_str(&format!("{}\n", word(start)));
+    let end = start + tangent * again;
+    if again > 0.0 {
+        program.push_str(&format!("{}\n", word(end)));
+    }
+    let (centre, behind) = (end + normal * lead, end + (normal + tangent) * lead);
+    program.push_str(&format!("g3 {} {}\ng40 g1 x0 y0\nm2\n", word(behind), by(centre, end)));
+    Some((program, sides, 0.5 * diameter))
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 400, failure_persistence: None, ..ProptestConfig::default() })]
+
+    /// Arcs that lead in and out hold up nothing, and nothing is cut; the round is made whole.
+    #[test]
+    fn a_pocket_is_led_into_and_out_of(seed in any::<u64>()) {
+        let Some((program, sides, radius)) = led_round(seed) else { return Ok(()) };
+        let (found, error) = compensated("pocket.ngc", program.as_bytes(), &ToolTable::default());
+        prop_assert!(error.is_none(), "{error:?}\n{program}");
+        let run: Vec<CentrePiece> = found.runs[0].iter().copied().filter(|piece| piece.place[0] > 3).collect();
+        let (mut turn, mut before) = (0.0, run[0].start());
+        for piece in &run {
+            let [from, to] = piece.interval;
+            for k in 0..=40 {
+                let point = piece.point(from + (to - from) * f64::from(k) / 40.0);
+                let distance = sides.iter().map(|side| (foot(point, *side) - point).norm()).fold(f64::INFINITY, f64::min);
+                // The ends of the arcs have six decimals.
+                prop_assert!(distance > radius - 2e-6, "{distance} for {radius} at {point:?}\n{program}");
+                turn += (before.conj() * point).arg();
+                before = point;
+            }
+        }
+        prop_assert!((turn / std::f64::consts::TAU - 1.0).abs() < 0.5, "{turn}\n{program}");
+    }
+}
+
 /// Tools other than LinuxCNC's: the table is one's own.
 #[test]
 fn a_table_may_be_made() {

@@ -271,6 +271,25 @@ fn rounds_may_be_repeated() {
     assert_eq!((depths[2].0, depths[2].2[2]), (2 + 7 + 8, -3.0));
 }
 
+/// Three turns of a helix in a bore of radius 10 are three turns in one of radius 9, as deep.
+#[test]
+fn turns_of_a_helix_are_rounds() {
+    let found = with("t1 m6\ng0 x0 y0\ng41 g1 x10 y0\ng3 x10 y0 z-6 i-10 j0 p3\ng40 g1 x0 y0\n");
+    assert_ends(&found, &[[9.0, 0.0]; 4]);
+    let z: Vec<[f64; 2]> = found.pieces.iter().map(|piece| piece.z).collect();
+    for (found, wanted) in z.iter().zip([[0.0, 0.0], [0.0, -2.0], [-2.0, -4.0], [-4.0, -6.0]]) {
+        assert!((found[0] - wanted[0]).abs() < 1e-9 && (found[1] - wanted[1]).abs() < 1e-9, "{z:?}");
+    }
+}
+
+/// A run that begins where another one has just ended begins where the tool's centre is.
+#[test]
+fn a_run_may_follow_another() {
+    let found = with("t1 m6\ng0 x-10 y0\ng41 g1 x0 y0\nx20\ng40\ng42 y-20\nx0\ng40 g0 x-50\n");
+    // Right of the way back is above it; the corner in between is concave.
+    assert_ends(&found, &[[0.0, 1.0], [20.0, 1.0], [20.0, -19.0], [0.0, -19.0]]);
+}
+
 /// A ramp falls evenly along its side; where a corner cannot be reached the heights on both sides of it meet.
 #[test]
 fn heights_go_along() {
@@ -344,6 +363,22 @@ fn splines_are_offset_as_ph_curves() {
     let chords = polygon(&points);
     let nearest = clearance(&ph, &chords);
     assert!((nearest - 1.0).abs() < 1.01e-3, "{nearest}");
+}
+
+/// A closed drop of two cubics, its tip at the origin, from outside and from inside.
+#[test]
+fn a_round_may_be_of_splines() {
+    let drop = "g5 i10 j-10 p0 q-8 x20 y0\ng5 i0 j8 p10 q10 x0 y0\n";
+    for (on, from, side) in [("g42", "x-10 y0", 1.0), ("g41", "x12 y0", -1.0)] {
+        let found = with(&format!("t1 m6\ng0 {from}\n{on} g1 x0 y0\n{drop}g40 g1 {from}\n"));
+        let ph: Vec<CentrePiece> =
+            found.pieces.iter().copied().filter(|piece| matches!(piece.segment, Segment::Ph(_))).collect();
+        assert!(ph.iter().all(|piece| piece.offset == side));
+        let contour: Vec<Segment<f64>> = ph.iter().map(|piece| piece.segment).collect();
+        let nearest = clearance(&found.pieces[1..], &contour);
+        assert!((nearest - 1.0).abs() < 1e-6, "{nearest}");
+        assert!(found.warnings.is_empty(), "{:?}", found.warnings);
+    }
 }
 
 /// A circle of 720 short lines becomes a few curves.
