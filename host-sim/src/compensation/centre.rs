@@ -4,7 +4,8 @@ use shared::curve::{Curve as _, Segment};
 
 use super::Point;
 use super::chain::{Chain, Event};
-use super::error::{CompensationError, Warning};
+use super::clear::too_near;
+use super::error::{CompensationError, Trouble, Warning};
 use super::follow::{Bit, Course, Way, follow};
 use super::lead::{self, First};
 use super::piece::CentrePiece;
@@ -69,6 +70,9 @@ const CLOSE: f64 = 1e-9;
 /// Pieces shorter than this, in mm, are rounding.
 const SHORTEST: f64 = 1e-9;
 
+/// Cuts of the way in that are less deep than this, in mm, are worth no word.
+const DEEP: f64 = 1e-3;
+
 /// The path of a run; none without a motion.
 pub(super) fn of(run: &mut Run) -> Result<Option<Centre>, CompensationError> {
     run.close()?;
@@ -87,9 +91,21 @@ pub(super) fn of(run: &mut Run) -> Result<Option<Centre>, CompensationError> {
     let mut pieces = Vec::new();
     let onto = lead::onto(&lead.way, distance, first.as_ref())
         .map_err(|fault| CompensationError { fault, place: lead.heading.place })?;
-    for segment in onto {
-        pieces.push(leading(&lead, &segment, pieces.is_empty()));
+    for segment in &onto {
+        pieces.push(leading(&lead, segment, pieces.is_empty()));
     }
+    let cut = course.round.and_then(|[from, to]| {
+        let round = chain.links[from..to].iter().map(|link| &link.curve);
+        too_near(&onto, round, distance.abs()).filter(|(depth, _)| *depth > DEEP)
+    });
+    let cut = cut.map(|(depth, at)| Warning {
+        trouble: Trouble::Entry,
+        lines: [lead.heading.place[0]; 2],
+        column: lead.heading.place[1],
+        depth,
+        at,
+        radius: distance.abs(),
+    });
     let before = pieces.len();
     let along: Vec<CentrePiece> = course.bits.iter().filter_map(|bit| piece(bit, chain, distance)).collect();
     pieces.extend(along);
@@ -108,7 +124,7 @@ pub(super) fn of(run: &mut Run) -> Result<Option<Centre>, CompensationError> {
         place: pieces.last().map_or(lead.heading.place, |piece| piece.place),
     };
     let corners = course.left.iter().filter(|(_, warning)| warning.is_none()).count();
-    let left = course.left.iter().filter_map(|(_, warning)| *warning).collect();
+    let left = cut.into_iter().chain(course.left.iter().filter_map(|(_, warning)| *warning)).collect();
     Ok(Some(Centre { pieces, events, left, corners, start_z: lead.z[0], start: lead.way.from, leaving }))
 }
 

@@ -161,7 +161,7 @@ fn with_ends(curve: &Segment<f64>, start: Complex<f64>, end: Complex<f64>) -> Se
 }
 
 /// A box around a segment.
-fn bounds(curve: &Segment<f64>) -> AABB<[f64; 2]> {
+pub(super) fn bounds(curve: &Segment<f64>) -> AABB<[f64; 2]> {
     let points = match curve {
         Segment::Arc(arc) => {
             let (centre, radius) = (arc.centre(), arc.radius.norm());
@@ -169,8 +169,9 @@ fn bounds(curve: &Segment<f64>) -> AABB<[f64; 2]> {
             vec![centre - corner, centre + corner]
         }
         Segment::Line(line) => vec![line.start, line.end],
-        // Only lines and arcs are split at nodes.
-        Segment::Ph(_) | Segment::Spline(_) => vec![curve.point(0.0)],
+        Segment::Ph(curve) => curve.control_points().to_vec(),
+        // No motion becomes one.
+        Segment::Spline(_) => Vec::new(),
     };
     let far = f64::INFINITY;
     let (low, high) = points.iter().fold(([far; 2], [-far; 2]), |(low, high), p| {
@@ -190,8 +191,8 @@ fn passes(curve: &Segment<f64>, at: Complex<f64>) -> Option<f64> {
     (is_inside && (curve.point(xi) - at).norm() <= NEAR).then_some(xi)
 }
 
-/// The parameter of a segment's point that is nearest to another one, which is near.
-fn nearest(curve: &Segment<f64>, at: Complex<f64>) -> f64 {
+/// The parameter of a segment's point that is nearest to another one.
+pub(super) fn nearest(curve: &Segment<f64>, at: Complex<f64>) -> f64 {
     match curve {
         Segment::Line(line) => {
             let chord = line.end - line.start;
@@ -212,7 +213,7 @@ fn nearest(curve: &Segment<f64>, at: Complex<f64>) -> f64 {
             }
         }
         Segment::Ph(_) | Segment::Spline(_) => {
-            // It is on the curve, so Newton's method ends there.
+            // Steps that leave the second derivative out end there, if it is near.
             const SAMPLES: u32 = 64;
             const STEPS: u32 = 20;
             let samples = (0..=SAMPLES).map(|k| f64::from(k) / f64::from(SAMPLES));

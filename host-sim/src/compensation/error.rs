@@ -77,14 +77,25 @@ pub struct CompensationError {
     pub place: [usize; 2],
 }
 
-/// Material that the tool leaves on the part because it cannot come there.
+/// What a warning is about.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Trouble {
+    /// The tool leaves material because it cannot come there.
+    Left,
+    /// The way in cuts into the closed contour that it leads to.
+    Entry,
+}
+
+/// A place at which the part is not as the program has it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Warning {
-    /// The lines of the first and the last motion that are not run whole.
+    /// What is so.
+    pub trouble: Trouble,
+    /// The lines of the first and the last motion that are not run whole; of the way in.
     pub lines: [usize; 2],
     /// The column of the first one.
     pub column: usize,
-    /// The thickness of the material at its thickest, in mm.
+    /// The thickness of the material that is left, or how deep the cut is; at the thickest and deepest place, in mm.
     pub depth: f64,
     /// The point of the contour where that is, in mm.
     pub at: Complex<f64>,
@@ -102,7 +113,14 @@ impl fmt::Display for Warning {
         }
         let [depth, radius] = [self.depth, self.radius].map(|mm| Units::Mm.length(mm));
         let at = Units::Mm.point(self.at);
-        write!(f, ": a tool of radius {radius} cannot enter and leaves up to {depth} of material at {at} mm")
+        match self.trouble {
+            Trouble::Left => {
+                write!(f, ": a tool of radius {radius} cannot enter and leaves up to {depth} of material at {at} mm")
+            }
+            Trouble::Entry => {
+                write!(f, ": a tool of radius {radius} cuts {depth} into the contour on its way in, at {at} mm")
+            }
+        }
     }
 }
 
@@ -145,7 +163,10 @@ impl fmt::Display for Fault {
                 plain(radius)
             ),
             Self::Tangle => f.write_str("the contour under cutter compensation crosses itself too often; put G40 in between"),
-            Self::Refused(warning) => write!(f, "{warning}; take a smaller tool, or let it be trimmed"),
+            Self::Refused(warning) => match warning.trouble {
+                Trouble::Left => write!(f, "{warning}; take a smaller tool, or let it be trimmed"),
+                Trouble::Entry => write!(f, "{warning}; lead in from farther away, or on an arc"),
+            },
         }
     }
 }

@@ -16,7 +16,7 @@ use shared::complex::Complex;
 use shared::curve::{Arc, Curve as _, Segment};
 
 use super::chain::Chain;
-use super::error::{Fault, Warning};
+use super::error::{Fault, Trouble, Warning};
 use crate::contour::{Along, Contour};
 use crate::offset::{Loop, Offset, OffsetError, Undercut, trim, undercuts};
 
@@ -37,6 +37,8 @@ pub(super) struct Course {
     pub bits: Vec<Bit>,
     /// Where on the chain material is left. None is said of an inside corner that keeps the tool's roundness, and no more.
     pub left: Vec<(f64, Option<Warning>)>,
+    /// The links of its first round.
+    pub round: Option<[usize; 2]>,
     /// Whether the contour begins with a round.
     pub begins_with_round: bool,
     /// Whether it ends with one.
@@ -105,6 +107,7 @@ fn part(chain: &mut Chain, [from, to]: [usize; 2], need: Need, way: Way) -> Resu
     let reach = end + again;
     let mut course = trimmed(chain, [start, end], true, Need::Both, way)?;
     course.go_on(count, reach);
+    course.round = Some([start, end]);
     course.begins_with_round = start == from;
     course.ends_with_round = reach == to && again % count == 0;
     if start > from {
@@ -217,7 +220,14 @@ fn warning(chain: &Chain, undercut: &Undercut, [from, to]: [usize; 2], distance:
     }
     let mut lines = [first.place[0], last.place[0]];
     lines.sort_unstable();
-    Some(Warning { lines, column: first.place[1], depth: undercut.depth, at: undercut.deepest, radius: distance.abs() })
+    Some(Warning {
+        trouble: Trouble::Left,
+        lines,
+        column: first.place[1],
+        depth: undercut.depth,
+        at: undercut.deepest,
+        radius: distance.abs(),
+    })
 }
 
 /// Which place that is on two paths is taken.
@@ -254,6 +264,7 @@ fn joined(before: Course, behind: Course, change: Change) -> Option<Course> {
     Some(Course {
         bits,
         left,
+        round: before.round.or(behind.round),
         begins_with_round: before.begins_with_round && change == Change::Last,
         ends_with_round: behind.ends_with_round,
     })

@@ -10,7 +10,7 @@
 //! | `curves` | motions as segments that have an exact offset |
 //! | `chain` | the contour of a run, and where it comes back to itself |
 //! | `follow` | the trimmed offset along it, from its start to its end |
-//! | `lead` | the ways onto it and off it |
+//! | `lead`, `clear` | the ways onto it and off it, and whether the first one cuts |
 //! | `piece`, `centre` | what comes of it |
 //! | `error` | what can be wrong, and what is worth a word |
 //!
@@ -31,6 +31,7 @@
 
 mod centre;
 mod chain;
+mod clear;
 mod curves;
 mod error;
 mod follow;
@@ -50,14 +51,14 @@ use crate::program::item::{Compensation, Cutter, Side};
 use crate::program::{Action, Item, Motion};
 use curves::{SAME, flat};
 
-pub use error::{CompensationError, Fault, Warning, Within};
+pub use error::{CompensationError, Fault, Trouble, Warning, Within};
 pub use piece::CentrePiece;
 pub use tool::{Tool, ToolTable};
 
 /// What is done where the tool cannot follow the contour.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Gouge {
-    /// What it cannot reach is left out, with a warning.
+    /// What it cannot reach is left out, with a warning; a way in that cuts is run, with one.
     #[default]
     Trim,
     /// It is an error.

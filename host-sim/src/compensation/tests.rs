@@ -204,6 +204,18 @@ fn a_notch_that_is_too_narrow_is_left_with_a_warning() {
     assert!(refused.contains("lines 6 to 8: a tool of radius 6 mm cannot enter"), "{refused}");
 }
 
+/// The way into a pocket through its wall cuts as deep as the tool is thick on one side.
+#[test]
+fn a_way_in_that_cuts_is_said() {
+    let program = "t1 m6\ng0 x30 y10\ng41 g1 x0 y10\ny0\nx20\ny20\nx0\ny10\ng40 g1 x10 y10\n";
+    let found = with(program);
+    let [warning] = found.warnings[..] else { panic!("{:?}", found.warnings) };
+    assert_eq!((warning.trouble, warning.lines), (Trouble::Entry, [4; 2]));
+    assert!((warning.depth - 1.0).abs() < 1e-9 && (warning.at - Complex::new(20.0, 10.0)).norm() < 0.1, "{warning}");
+    let refused = try_with(program, Options { gouge: Gouge::Refuse, ..Options::default() }).unwrap_err();
+    assert!(refused.contains("cuts 1 mm into the contour on its way in"), "{refused}");
+}
+
 /// An inside corner of arcs that are rounder than the tool is none; one that is tighter is left.
 #[test]
 fn an_inside_arc_is_followed_if_the_tool_is_no_larger() {
