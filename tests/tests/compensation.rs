@@ -4,7 +4,7 @@ use std::fs::File;
 use std::io::BufReader;
 use std::path::PathBuf;
 
-use host_sim::compensation::{CentrePiece, Compensator, Options, Step, Summary, Tool, ToolTable, Warning};
+use host_sim::compensation::{CentrePiece, Compensator, Options, Step, Summary, Tool, ToolTable, Trouble, Warning};
 use host_sim::program::rs274::{Settings, read};
 use host_sim::program::{Action, Arc, Item, Motion};
 use host_sim::units::Units;
@@ -282,6 +282,7 @@ proptest! {
         let (found, error) = compensated("polygon.ngc", program.as_bytes(), &ToolTable::default());
         prop_assert!(error.is_none(), "{error:?}\n{program}");
         prop_assert_eq!(found.runs.len(), 1);
+        prop_assert!(found.warnings.iter().all(|warning| warning.trouble == Trouble::Left), "{:?}\n{program}", found.warnings);
         let run: Vec<CentrePiece> = found.runs[0].iter().copied().filter(|piece| piece.place[0] > 3).collect();
         prop_assert!(!run.is_empty());
         let mut turn = 0.0;
@@ -358,6 +359,7 @@ proptest! {
         let Some((program, sides, radius)) = led_round(seed) else { return Ok(()) };
         let (found, error) = compensated("pocket.ngc", program.as_bytes(), &ToolTable::default());
         prop_assert!(error.is_none(), "{error:?}\n{program}");
+        prop_assert!(found.warnings.iter().all(|warning| warning.trouble == Trouble::Left), "{:?}\n{program}", found.warnings);
         let run: Vec<CentrePiece> = found.runs[0].iter().copied().filter(|piece| piece.place[0] > 3).collect();
         let (mut turn, mut before) = (0.0, run[0].start());
         for piece in &run {

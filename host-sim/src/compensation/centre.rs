@@ -5,9 +5,10 @@ use shared::curve::{Curve as _, Segment};
 use super::Point;
 use super::chain::{Chain, Event};
 use super::clear::too_near;
-use super::error::{CompensationError, Trouble, Warning};
+use super::curves::SAME;
+use super::error::{CompensationError, Trouble, WORTH, Warning};
 use super::follow::{Bit, Course, Way, follow};
-use super::lead::{self, First};
+use super::lead::{self, Entry, First};
 use super::piece::CentrePiece;
 use super::run::{Lead, Run};
 use crate::program::{Action, Feed, Item};
@@ -70,9 +71,6 @@ const CLOSE: f64 = 1e-9;
 /// Pieces shorter than this, in mm, are rounding.
 const SHORTEST: f64 = 1e-9;
 
-/// Cuts of the way in that are less deep than this, in mm, are worth no word.
-const DEEP: f64 = 1e-3;
-
 /// The path of a run; none without a motion.
 pub(super) fn of(run: &mut Run) -> Result<Option<Centre>, CompensationError> {
     run.close()?;
@@ -87,7 +85,7 @@ pub(super) fn of(run: &mut Run) -> Result<Option<Centre>, CompensationError> {
         })?;
     }
     course.bits.retain(|bit| bit.length(chain, distance) > SHORTEST);
-    let first = course.bits.first().and_then(|bit| first(bit, &course, chain, distance));
+    let first = course.bits.first().and_then(|bit| first(bit, &course, chain, &lead.way, distance));
     let mut pieces = Vec::new();
     let onto = lead::onto(&lead.way, distance, first.as_ref())
         .map_err(|fault| CompensationError { fault, place: lead.heading.place })?;
@@ -96,7 +94,7 @@ pub(super) fn of(run: &mut Run) -> Result<Option<Centre>, CompensationError> {
     }
     let cut = course.round.and_then(|[from, to]| {
         let round = chain.links[from..to].iter().map(|link| &link.curve);
-        too_near(&onto, round, distance.abs()).filter(|(depth, _)| *depth > DEEP)
+        too_near(&onto, round, distance.abs()).filter(|(depth, _)| *depth > WORTH)
     });
     let cut = cut.map(|(depth, at)| Warning {
         trouble: Trouble::Entry,
@@ -128,14 +126,16 @@ pub(super) fn of(run: &mut Run) -> Result<Option<Centre>, CompensationError> {
     Ok(Some(Centre { pieces, events, left, corners, start_z: lead.z[0], start: lead.way.from, leaving }))
 }
 
-fn first(bit: &Bit, course: &Course, chain: &Chain, distance: f64) -> Option<First> {
+fn first(bit: &Bit, course: &Course, chain: &Chain, way: &Entry, distance: f64) -> Option<First> {
     let (curve, [from, _], offset) = bit.carrier(chain, distance)?;
-    Some(First {
-        point: curve.offset_point(from, offset),
-        tangent: curve.tangent(from),
-        at_start: bit.at[0] <= CLOSE,
-        is_round: course.begins_with_round,
-    })
+    let point = curve.offset_point(from, offset);
+    if !course.begins_with_round {
+        return Some(First { point, tangent: curve.tangent(from), at_start: bit.at[0] <= CLOSE, is_round: false });
+    }
+    // Where the arc about the start of a round is kept in part, the tool touches the start, too.
+    let radius = point - way.to;
+    let at_start = (radius.norm() - distance.abs()).abs() <= SAME;
+    Some(First { point, tangent: radius.left() * (1.0 / distance), at_start, is_round: true })
 }
 
 /// The node at the end of the chain, if the tool touches it, and the direction there.

@@ -86,6 +86,9 @@ pub enum Trouble {
     Entry,
 }
 
+/// What is thinner or less deep than this, in mm, is worth no word: programs are rounded.
+pub(super) const WORTH: f64 = 1e-3;
+
 /// A place at which the part is not as the program has it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Warning {

@@ -16,7 +16,7 @@ use shared::complex::Complex;
 use shared::curve::{Arc, Curve as _, Segment};
 
 use super::chain::Chain;
-use super::error::{Fault, Trouble, Warning};
+use super::error::{Fault, Trouble, WORTH, Warning};
 use crate::contour::{Along, Contour};
 use crate::offset::{Loop, Offset, OffsetError, Undercut, trim, undercuts};
 
@@ -202,7 +202,7 @@ fn bits(contour: &Contour, run: &Loop, base: usize, distance: f64) -> Vec<Bit> {
     bits
 }
 
-/// What an undercut is worth: none where it is an inside corner between two motions, both of which are run.
+/// What an undercut is worth: none where it is thin, or an inside corner between two motions, both of which are run.
 fn warning(chain: &Chain, undercut: &Undercut, [from, to]: [usize; 2], distance: f64) -> Option<Warning> {
     let count = to - from;
     let ahead = (undercut.to.0 + count - undercut.from.0) % count;
@@ -215,7 +215,7 @@ fn warning(chain: &Chain, undercut: &Undercut, [from, to]: [usize; 2], distance:
     let swallows = |number: f64| number <= CLOSE;
     let is_corner =
         first.motion != last.motion && !between && !swallows(undercut.from.1) && !swallows(1.0 - undercut.to.1);
-    if is_corner {
+    if is_corner || undercut.depth < WORTH {
         return None;
     }
     let mut lines = [first.place[0], last.place[0]];

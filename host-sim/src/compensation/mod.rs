@@ -28,6 +28,9 @@
 //! | G18 | XZ compensation | an error where it has arcs |
 //! | Z alone just behind G40 | | straight up, where the tool's centre is |
 //! | splines | errors | PH quintics within [`Options::tolerance`], and their offset |
+//!
+//! A round is a closed contour within a run, whatever leads in and out. What leads is kept clear of the half of the round that it meets and
+//! not of all of it; nothing is said of a straight way out that cuts. A point that is within a micrometre of a line or an arc lies on it.
 
 mod centre;
 mod chain;
