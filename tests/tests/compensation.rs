@@ -1,4 +1,5 @@
 //! Cutter compensation of whole programs: LinuxCNC's own paths, and random polygons measured by samples.
+#![allow(clippy::unwrap_used, reason = "a failed test says where")]
 
 use std::fs::File;
 use std::io::BufReader;
@@ -195,6 +196,9 @@ fn a_round_with_straight_ways_in_and_out() {
     );
 }
 
+/// A side of a polygon: its ends.
+type Side = [Complex<f64>; 2];
+
 /// A polygon around the origin, anticlockwise, every point of which sees the origin.
 fn polygon(random: &mut Random) -> Vec<Complex<f64>> {
     let count = random.whole(3, 24);
@@ -212,23 +216,23 @@ fn polygon(random: &mut Random) -> Vec<Complex<f64>> {
 }
 
 /// The point of a line that is nearest to another point.
-fn foot(p: Complex<f64>, [a, b]: [Complex<f64>; 2]) -> Complex<f64> {
+fn foot(p: Complex<f64>, [a, b]: Side) -> Complex<f64> {
     let chord = b - a;
     a + chord * ((p - a).dot(chord) / chord.norm_sqr()).clamp(0.0, 1.0)
 }
 
 /// How often the sides go around a point.
-fn winding(p: Complex<f64>, sides: &[[Complex<f64>; 2]]) -> f64 {
+fn winding(p: Complex<f64>, sides: &[Side]) -> f64 {
     let turn: f64 = sides.iter().map(|[a, b]| ((*a - p).conj() * (*b - p)).arg()).sum();
     (turn / std::f64::consts::TAU).round()
 }
 
 /// A round about a polygon, from a place that the tool can touch, and some of it again.
-fn round(seed: u64) -> (String, Vec<[Complex<f64>; 2]>, f64, bool) {
+fn round(seed: u64) -> (String, Vec<Side>, f64, bool) {
     let mut random = Random::new(seed);
     let mut corners = polygon(&mut random);
     let is_inside = random.chance(0.5);
-    let sides = |corners: &[Complex<f64>]| -> Vec<[Complex<f64>; 2]> {
+    let sides = |corners: &[Complex<f64>]| -> Vec<Side> {
         (0..corners.len()).map(|k| [corners[k], corners[(k + 1) % corners.len()]]).collect()
     };
     let (start, entry, radius) = if is_inside {
@@ -305,7 +309,7 @@ proptest! {
 
 /// A pocket around the origin, begun and left on quarter circles at the point of its wall that is nearest to the origin, and some of it run
 /// again; none where that is a corner.
-fn led_round(seed: u64) -> Option<(String, Vec<[Complex<f64>; 2]>, f64)> {
+fn led_round(seed: u64) -> Option<(String, Vec<Side>, f64)> {
     let mut random = Random::new(seed);
     let corners = polygon(&mut random);
     let sides: Vec<_> = (0..corners.len()).map(|k| [corners[k], corners[(k + 1) % corners.len()]]).collect();
