@@ -13,6 +13,7 @@
 //! | [`offset`] | the exact trimmed offset of a contour |
 //! | [`spline`] | splines through points, and ways to drive them at a constant feed |
 //! | [`fit`] | curves for the polylines of programs |
+//! | [`compensation`] | the path of the tool's centre in the place of a program's contour |
 //! | [`strokes`] | a program as the curves of the tool's centre, z and all, and what is done between them |
 //! | [`job`] | what a person wants: contour, offset, feed; the contour form |
 //! | [`path`] | the exact curves of the tool's centre in f64, and the pieces that a controller gets of them |
@@ -34,6 +35,7 @@
 //! | [`report`] | pictures and tables of results in one HTML file |
 
 pub mod approach;
+pub mod compensation;
 pub mod contour;
 pub mod controller;
 pub mod fit;

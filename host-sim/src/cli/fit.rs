@@ -4,20 +4,26 @@ use std::fs::{self, File};
 use std::io::{BufReader, Write};
 
 use clap::{Args, ValueEnum};
-use host_sim::fit::contour::{COMPENSATION, Chains, only};
+use host_sim::compensation::{self, Compensator};
+use host_sim::fit::contour::{Chains, only};
 use host_sim::fit::program::{Fitter, Step, Summary};
 use host_sim::fit::vector::Vector;
 use host_sim::fit::{Curve, Fit, Kind};
 use host_sim::input::InputError;
-use host_sim::program::item::{Compensation, Nurbs};
+use host_sim::program::item::Nurbs;
 use host_sim::program::write::{Dialect, Settings, WriteError, Writer};
-use host_sim::program::{self, Action, Feed, Motion, Plane};
+use host_sim::program::{self, Action, Feed, Item, Motion};
 use host_sim::report::{self, Fitted};
 use host_sim::units::Units;
 use serde::Serialize;
 
 use super::Failure;
 use super::output::{create, failed, json, write};
+use super::tooling::Tools;
+
+/// What is said of a spline beside which a tool runs.
+const SPLINE_BESIDE: &str =
+    "the path beside a spline is no curve that a program can say; simulate, plan or stream the program as it is";
 
 /// Lay curves through the lines of a program, under a tolerance that holds both ways
 #[derive(Args)]
@@ -42,6 +48,8 @@ pub struct FitVerb {
     /// Draw the lines and the curves, seen along z, as SVG
     #[arg(long, value_name = "FILE.svg")]
     svg: Option<String>,
+    #[command(flatten)]
+    tools: Tools,
     /// Write the result as JSON; `-` is standard output
     #[arg(long, value_name = "FILE")]
     json: Option<String>,
@@ -156,16 +164,34 @@ impl FitVerb {
             fitter = fitter.with_its_curves();
         }
         let lines = &mut picture.lines;
-        let left_out = program::read(&self.input, input, &mut |item| {
+        let mut take = |item: &Item<'_>| {
             if let (true, Action::Motion(Motion::Line { to })) = (is_drawn, item.action) {
                 draw(lines, Vector(item.from), Vector(to));
             }
             fitter.take(item)
-        })?;
+        };
+        let tooling = self.tools.read()?;
+        let mut warnings = Vec::new();
+        let mut centre = |step: compensation::Step<'_>| match step {
+            compensation::Step::Kept(item) => take(item),
+            compensation::Step::Centre(pieces) => pieces.iter().try_for_each(|piece| match piece.item() {
+                Some(item) => take(&item),
+                None => Err(SPLINE_BESIDE.to_string()),
+            }),
+            compensation::Step::Warning(warning) => {
+                warnings.push(format!("warning: {}: {warning}", self.input));
+                Ok(())
+            }
+        };
+        let options = compensation::Options { gouge: tooling.gouge, ..compensation::Options::default() };
+        let mut compensator = Compensator::new(&tooling.tools, options, &mut centre);
+        let left_out = program::read(&self.input, input, &mut |item| compensator.take(item))?;
+        compensator.finish().map_err(|message| InputError::new(&self.input, message))?;
         let summary = fitter.finish().map_err(|message| InputError::new(&self.input, message))?;
         bar.finish_and_clear();
-        for warning in left_out {
-            eprintln!("{}: {warning}", self.input);
+        warnings.extend(left_out.iter().map(|warning| format!("warning: {}: {warning}", self.input)));
+        for warning in warnings {
+            eprintln!("{warning}");
         }
         if let Target::Program(writer, left) = target {
             let name = self.output.as_deref().unwrap_or_default();
@@ -231,7 +257,6 @@ impl Target {
                         writer.motion(item.from, item.feed, &motion).map_err(|error| error.to_string())
                     }
                     Action::End => Ok(()),
-                    Action::Compensation(Compensation::On { .. }) => Err(COMPENSATION.to_string()),
                     _ => {
                         *left += 1;
                         Ok(())

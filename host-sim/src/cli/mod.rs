@@ -15,6 +15,7 @@ mod prepare;
 mod reproduce;
 mod simulate;
 mod stream;
+mod tooling;
 
 use std::fmt;
 use std::process::ExitCode;

@@ -8,6 +8,7 @@ use shared::machine::MachineSettings;
 use shared::piece::Order;
 
 use super::planning::{Planned, Planning};
+use super::tooling::Tools;
 
 /// A job and what the command line says of its motion.
 #[derive(Args)]
@@ -40,6 +41,8 @@ pub struct Motion {
     /// Where on the machine the job's zero stands, in the job's units, as 100,50 or 100,50,-20: what lies within its travel depends on it
     #[arg(long, value_name = "X,Y,Z", value_parser = zero_from, default_value = "0,0", allow_hyphen_values = true)]
     zero: [f64; 3],
+    #[command(flatten)]
+    tools: Tools,
     #[command(flatten)]
     pacing: super::pacing::Pacing,
     /// Plan the feed within the limits of --machine: as fast as its axes bear, from rest to rest. Without it the job's own feed law is run
@@ -110,7 +113,10 @@ impl Motion {
     /// Reads the job and makes its path, at the job's own feed.
     pub fn unplanned(&self) -> Result<(Job, Path), InputError> {
         let by = FeedOverride { rate: self.feed, weight: self.weight, reduction: self.reduction, ramp: self.ramp };
-        let job = Job::read(&self.job)?.with_feed(by)?.with_loop(self.chosen);
+        let job = Job::read_with(&self.job, &self.tools.read()?)?.with_feed(by)?.with_loop(self.chosen);
+        for warning in &job.warnings {
+            eprintln!("warning: {warning}");
+        }
         let order = match self.order {
             OrderName::First => Order::First,
             OrderName::Second => Order::Second,

@@ -11,7 +11,6 @@ use super::Curve;
 use super::curve::Bezier;
 use super::program::Step;
 use super::vector::Vector;
-use crate::program::item::Compensation;
 use crate::program::{Action, Arc, Feed, Motion, Plane};
 
 /// One contour.
@@ -44,8 +43,6 @@ pub enum Unfit {
     Curve,
     /// A curve that is not at one height.
     Height,
-    /// The contour is given for a tool's edge, and nothing offsets it here.
-    Compensation,
 }
 
 impl fmt::Display for Unfit {
@@ -53,15 +50,10 @@ impl fmt::Display for Unfit {
         f.write_str(match self {
             Self::NoFeed => "a contour has a feed per minute; give F under G94",
             Self::Curve => "the contour form takes lines and arcs of a program; write to .mpf instead",
-            Self::Compensation => COMPENSATION,
             Self::Height => "a curve changes its height, and a contour has none; write to .mpf instead",
         })
     }
 }
-
-/// What is said of a program whose path is not that of the tool's centre.
-pub const COMPENSATION: &str = "cutter compensation is not applied to programs yet; give the path of the tool's centre, or the contour with \
-                                [offset] in TOML";
 
 /// Heights, and ends, that are the same, in mm.
 const SAME: f64 = 1e-9;
@@ -89,7 +81,6 @@ impl Chains {
                     self.is_open = false;
                     Ok(())
                 }
-                Action::Compensation(Compensation::On { .. }) => Err(Unfit::Compensation),
                 _ => Ok(()),
             },
         }

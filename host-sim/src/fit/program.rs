@@ -155,7 +155,8 @@ impl<'a> Fitter<'a> {
         Ok(self.summary)
     }
 
-    fn close(&mut self) -> Result<(), String> {
+    /// Gives the chain that is open to the sink. Errors are those of the sink.
+    pub fn close(&mut self) -> Result<(), String> {
         let points = std::mem::take(&mut self.points);
         if points.len() < 2 {
             return Ok(());

@@ -43,6 +43,7 @@ pub(super) fn job(source: Source) -> Result<Job, InputError> {
         contour,
         strokes: Vec::new(),
         events: Vec::new(),
+        warnings: Vec::new(),
         pieces,
         places,
     })

@@ -12,7 +12,7 @@ use crate::contour::{Along, Contour};
 use crate::input::{InputError, Source};
 use crate::offset::Offset;
 use crate::program;
-use crate::strokes::{Event, Pace, Stroke, Strokes};
+use crate::strokes::{Event, Pace, Stroke, Strokes, Tooling};
 
 pub use crate::units::Units;
 use places::{Place, Places};
@@ -88,6 +88,8 @@ pub struct Job {
     pub strokes: Vec<Stroke>,
     /// What a program does between them.
     pub events: Vec<Event>,
+    /// What of the file is worth a word: what was left out, and where a tool cannot follow its contour.
+    pub warnings: Vec<String>,
     /// The trimmed offset as the file gives it; without any the offset is trimmed when a path is made.
     pub pieces: Vec<GivenPiece>,
     /// Where the file says what, for errors that show later.
@@ -98,7 +100,12 @@ impl Job {
     /// Reads a job by its file's ending: a contour, a drawing of one contour, or a program, whose lines become curves within 10 um, or within what its G64 P says.
     /// Errors name file, line and column.
     pub fn read(name: &str) -> Result<Self, InputError> {
-        if program::is_one(name) { program_file::job(name) } else { contour_file::job(open(name)?) }
+        Self::read_with(name, &Tooling::default())
+    }
+
+    /// The same with the tools that a program compensates for.
+    pub fn read_with(name: &str, tooling: &Tooling) -> Result<Self, InputError> {
+        if program::is_one(name) { program_file::job(name, tooling) } else { contour_file::job(open(name)?) }
     }
 
     /// The job of a program's strokes; `name` stands in errors. Errors: there is no stroke.

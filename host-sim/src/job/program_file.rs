@@ -11,8 +11,9 @@ use crate::fit::Kind;
 use crate::fit::contour::{Chains, only};
 use crate::fit::program::{Fitter, Step};
 use crate::input::{InputError, Source};
+use crate::program::item::Compensation;
 use crate::program::{self, Action, Item, Motion};
-use crate::strokes::{self, Lines, Pace, Stroke, Strokes};
+use crate::strokes::{self, Lines, Pace, Stroke, Strokes, Tooling};
 use crate::units::Units;
 
 /// The widest gap between two strokes that is taken for none, in mm.
@@ -22,11 +23,13 @@ const GAP_MM: f64 = 1e-3;
 pub const TOLERANCE_MM: f64 = 0.01;
 
 /// The job of a program: all that it does. Errors: those of its reader, and what the axes of a job cannot do.
-pub(super) fn job(name: &str) -> Result<Job, InputError> {
+pub(super) fn job(name: &str, tooling: &Tooling) -> Result<Job, InputError> {
     if program::is_drawing(name) {
         return drawing(name);
     }
-    of_strokes(name, strokes::read(name, open(name)?, Lines::FittedAsTold(Kind::Ph, TOLERANCE_MM))?)
+    let lines = Lines::FittedAsTold(Kind::Ph, TOLERANCE_MM);
+    let (strokes, warnings) = strokes::read(name, open(name)?, lines, tooling)?;
+    of_strokes(name, strokes).map(|job| Job { warnings, ..job })
 }
 
 /// The job of a drawing: its one contour, which has no feed. How a tool would get from one contour to another is not in a drawing.
@@ -42,7 +45,7 @@ fn drawing(name: &str) -> Result<Job, InputError> {
         _ => Ok(()),
     };
     let mut fitter = Fitter::new(Kind::Ph, TOLERANCE_MM, &mut take).with_its_curves();
-    program::read(name, open(name)?, &mut |item| fitter.take(item))?;
+    let left_out = program::read(name, open(name)?, &mut |item| fitter.take(item))?;
     fitter.finish().map_err(|message| InputError::new(name, message))?;
     if chains > 1 {
         let message = format!(
@@ -52,7 +55,8 @@ fn drawing(name: &str) -> Result<Job, InputError> {
         );
         return Err(InputError::new(name, message));
     }
-    of_strokes(name, strokes)
+    let warnings = left_out.iter().map(|warning| format!("{name}: {warning}")).collect();
+    of_strokes(name, strokes).map(|job| Job { warnings, ..job })
 }
 
 fn open(name: &str) -> Result<BufReader<File>, InputError> {
@@ -87,17 +91,25 @@ pub(super) fn of_strokes(name: &str, Strokes { strokes, events, .. }: Strokes) -
         contour: Contour { segments, closed: false },
         strokes,
         events,
+        warnings: Vec::new(),
         pieces: Vec::new(),
         places,
     })
 }
+
+/// What is said of a program that is offset already.
+const BESIDE: &str = "the program compensates for its tool itself, so there is no contour to offset; take G41 and G42 out";
 
 /// The contour form of a program. Errors: those of its reader, and a program that cuts no contour, or several.
 pub(super) fn source(name: &str) -> Result<Source, InputError> {
     let mut chains = Chains::default();
     let mut take = |step: Step<'_>| chains.take(&step).map_err(|error| error.to_string());
     let mut fitter = Fitter::new(Kind::Ph, TOLERANCE_MM, &mut take).with_the_programs_tolerance().with_its_curves();
-    program::read(name, open(name)?, &mut |item| fitter.take(item))?;
+    let mut centre = |item: &Item<'_>| match item.action {
+        Action::Compensation(Compensation::On { .. }) => Err(BESIDE.to_string()),
+        _ => fitter.take(item),
+    };
+    program::read(name, open(name)?, &mut centre)?;
     fitter.finish().map_err(|message| InputError::new(name, message))?;
     let text = only(&chains.chains, None).map_err(|message| InputError::new(name, message))?.to_toml();
     // Lines and columns of errors are those of the contour, as `hodograph fit -o` writes it.

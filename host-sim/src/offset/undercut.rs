@@ -103,8 +103,12 @@ fn deepest(ground: &Ground, way: &Field, radius: f64, from: f64, to: f64) -> Opt
     let thickness =
         |point: Complex<f64>| way.nearest(point, f64::INFINITY).map_or(0.0, |(_, foot)| foot.distance - radius);
     let mut best: Option<(f64, Complex<f64>)> = None;
-    for (stretch, &segment) in ground.field.stretches().iter().zip(&ground.segment_of) {
-        for round in [0.0, count] {
+    // Behind the start of a closed contour first: in the order of the stretches.
+    for round in [count, 0.0] {
+        let first = ground.segment_of.partition_point(|&segment| segment as f64 + 1.0 + round < from);
+        let behind = ground.segment_of.partition_point(|&segment| segment as f64 + round <= to);
+        let stretches = ground.field.stretches().iter().zip(&ground.segment_of);
+        for (stretch, &segment) in stretches.take(behind).skip(first) {
             let base = segment as f64 + round;
             let within = |at: f64| (at - base - stretch.from) / (stretch.to - stretch.from) - 0.5;
             let (a, b) = (within(from).max(-0.5), within(to).min(0.5));

@@ -131,7 +131,11 @@ fn strokes(job: &Job) -> Result<Vec<PathPiece>, InputError> {
         return Err(job.line_error(stroke.line, message));
     }
     let piece = |(number, stroke)| PathPiece::of_stroke(number, stroke, RAPID);
-    Ok(job.strokes.iter().enumerate().map(piece).flat_map(|piece| even(&piece)).collect())
+    let pieces: Vec<PathPiece> = job.strokes.iter().enumerate().map(piece).flat_map(|piece| even(&piece)).collect();
+    if job.strokes.iter().all(|stroke| stroke.offset == 0.0) {
+        return Ok(pieces);
+    }
+    Ok(drivable(&pieces, job.tolerance, job.feed.weight).into_iter().map(|(_, piece)| piece).collect())
 }
 
 /// The curves alone.

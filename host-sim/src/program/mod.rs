@@ -19,7 +19,7 @@
 
 pub mod apt;
 mod arc;
-pub mod bspline;
+pub(crate) mod bspline;
 pub mod drawing;
 pub mod item;
 mod lines;

@@ -3,15 +3,16 @@
 use std::f64::consts::TAU;
 
 use shared::complex::Complex;
-use shared::curve::{Arc as Circle, Line, Segment, Spline};
+use shared::curve::{Arc as Circle, Curve as _, Line, Segment, Spline};
 use shared::spline::CorrectionOrder;
 
 use super::rounding::{Rounded, rounded};
 use super::{Entry, Event, Pace, Stroke, What};
+use crate::compensation::CentrePiece;
 use crate::fit::program::Step;
 use crate::fit::{Curve, Kind, fit};
 use crate::height::Height;
-use crate::program::item::{Compensation, PathMode};
+use crate::program::item::PathMode;
 use crate::program::quintic::{self, Quintic, quintics};
 use crate::program::{Action, Arc, Feed, Item, Motion, Plane};
 use crate::vector::Vector;
@@ -91,7 +92,6 @@ impl Strokes {
                 };
                 Ok(())
             }
-            Action::Compensation(Compensation::On { .. }) => Err(COMPENSATION.to_string()),
             other => {
                 if let Some(what) = What::of(other) {
                     self.rests |= what.rests();
@@ -100,6 +100,41 @@ impl Strokes {
                 Ok(())
             }
         }
+    }
+
+    /// Takes a piece of the path of the tool's centre, from cutter compensation.
+    pub fn centre(&mut self, piece: &CentrePiece) {
+        let of = Of { feed: piece.feed, is_rapid: piece.is_rapid, line: piece.place[0] };
+        if piece.offset == 0.0 && piece.interval == [0.0, 1.0] {
+            let [from, to] = [(piece.start(), piece.z[0]), (piece.end(), piece.z[1])].map(|(p, z)| Vector([p.re, p.im, z]));
+            match piece.segment {
+                Segment::Line(_) => return self.line(from, to, of),
+                Segment::Arc(arc) => {
+                    let Complex { re, im } = arc.centre();
+                    let arc = Arc { plane: Plane::Xy, centre: [re, im], to: to.0, sweep: arc.sweep, turns: 0 };
+                    return self.arc(&arc, from.0, of);
+                }
+                Segment::Ph(_) | Segment::Spline(_) => {}
+            }
+        }
+        let [from, to] = piece.interval;
+        let [before, behind] = [from, to].map(|xi| piece.segment.length_to(xi));
+        let shift = self.join(
+            Vector([piece.start().re, piece.start().im, piece.z[0]]),
+            Vector([piece.end().re, piece.end().im, piece.z[1]]),
+        );
+        let slope = (piece.z[1] - piece.z[0]) / (behind - before);
+        let height = Height::Linear { start: piece.z[0] + shift.0[2] - slope * before, slope };
+        let mut segment = piece.segment;
+        match &mut segment {
+            Segment::Ph(curve) => curve.start = curve.start + flat(shift),
+            Segment::Arc(arc) => arc.start = arc.start + flat(shift),
+            Segment::Line(line) => {
+                (line.start, line.end) = (line.start + flat(shift), line.end + flat(shift));
+            }
+            Segment::Spline(curve) => curve.points = curve.points.map(|point| point + flat(shift)),
+        }
+        self.push_part(segment, piece.interval, piece.offset, height, of);
     }
 
     fn motion(&mut self, item: &Item<'_>, motion: &Motion<'_>) -> Result<(), String> {
@@ -233,16 +268,21 @@ impl Strokes {
     }
 
     fn push(&mut self, segment: Segment<f64>, height: Height, of: Of) {
+        self.push_part(segment, [0.0, 1.0], 0.0, height, of);
+    }
+
+    fn push_part(&mut self, segment: Segment<f64>, interval: [f64; 2], offset: f64, height: Height, of: Of) {
         let mut stroke = Stroke {
             segment,
-            interval: [0.0, 1.0],
-            offset: 0.0,
+            interval,
+            offset,
             height,
             pace: Pace::Unset,
             entry: if self.rests { Entry::Rest } else { self.mode },
             line: of.line,
         };
-        let way = height.way_to(&segment, 1.0) * height.stretch();
+        let [before, behind] = interval.map(|xi| height.way_to(&segment, xi));
+        let way = (behind - before) * height.stretch();
         if way < SHORTEST {
             return;
         }
@@ -256,9 +296,6 @@ impl Strokes {
         self.strokes.push(stroke);
     }
 }
-
-/// What is said of a program whose path is not that of the tool's centre.
-const COMPENSATION: &str = crate::fit::contour::COMPENSATION;
 
 /// Of a flat arc, or a helix about z: from the centre to its start, and the angle. The centre is moved so that both ends are on one circle. None
 /// where it would have to be moved far.

@@ -18,7 +18,7 @@ use crate::height::Height;
 
 pub use builder::Strokes;
 pub use event::{Event, What};
-pub use read::{Lines, read};
+pub use read::{Lines, Tooling, read};
 
 /// How fast a stroke is.
 #[derive(Clone, Copy, Debug, PartialEq)]

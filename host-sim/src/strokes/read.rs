@@ -1,10 +1,12 @@
-//! Programs as strokes.
+//! Programs as strokes: read, compensated, fitted.
 
+use std::cell::RefCell;
 use std::io::BufRead;
 
 use super::Strokes;
+use crate::compensation::{self, Compensator, Gouge, ToolTable};
 use crate::fit::Kind;
-use crate::fit::program::Fitter;
+use crate::fit::program::{Fitter, Step};
 use crate::input::InputError;
 use crate::program;
 
@@ -21,19 +23,57 @@ pub enum Lines {
     FittedAsTold(Kind, f64),
 }
 
-/// The strokes of a program, whose language its name tells. Errors: those of its reader, and what the axes of a job cannot do.
-pub fn read(name: &str, input: impl BufRead, lines: Lines) -> Result<Strokes, InputError> {
-    let mut strokes = match lines {
+/// What a program does not say itself.
+#[derive(Clone, Debug, Default)]
+pub struct Tooling {
+    /// The tools.
+    pub tools: ToolTable,
+    /// What is done where one cannot follow its contour.
+    pub gouge: Gouge,
+}
+
+/// The strokes of a program, whose language its name tells, and what is worth a word. Errors: those of its reader, and what the axes of a job cannot do.
+pub fn read(
+    name: &str,
+    input: impl BufRead,
+    lines: Lines,
+    tooling: &Tooling,
+) -> Result<(Strokes, Vec<String>), InputError> {
+    let strokes = RefCell::new(match lines {
         Lines::Rounded(tolerance) => Strokes::rounding(tolerance),
         Lines::Kept | Lines::Fitted(..) | Lines::FittedAsTold(..) => Strokes::default(),
-    };
-    let mut take = |step: crate::fit::program::Step<'_>| strokes.take(&step);
+    });
+    let mut take = |step: Step<'_>| strokes.borrow_mut().take(&step);
     let mut fitter = match lines {
         Lines::Kept | Lines::Rounded(_) => Fitter::keeping_lines(&mut take),
         Lines::Fitted(kind, tolerance) => Fitter::new(kind, tolerance, &mut take),
         Lines::FittedAsTold(kind, tolerance) => Fitter::new(kind, tolerance, &mut take).with_the_programs_tolerance(),
     };
-    program::read(name, input, &mut |item| fitter.take(item))?;
+    let mut warnings = Vec::new();
+    let options = compensation::Options {
+        gouge: tooling.gouge,
+        // A contour is fitted before it is offset, so that its offset is exact.
+        lines: match lines {
+            Lines::Fitted(Kind::Ph, tolerance) | Lines::FittedAsTold(Kind::Ph, tolerance) => Some(tolerance),
+            _ => None,
+        },
+        ..compensation::Options::default()
+    };
+    let mut give = |step: compensation::Step<'_>| match step {
+        compensation::Step::Kept(item) => fitter.take(item),
+        compensation::Step::Centre(pieces) => {
+            fitter.close()?;
+            pieces.iter().for_each(|piece| strokes.borrow_mut().centre(piece));
+            Ok(())
+        }
+        compensation::Step::Warning(warning) => {
+            warnings.push(format!("{name}: {warning}"));
+            Ok(())
+        }
+    };
+    let mut compensator = Compensator::new(&tooling.tools, options, &mut give);
+    program::read(name, input, &mut |item| compensator.take(item))?;
+    compensator.finish().map_err(|message| InputError::new(name, message))?;
     fitter.finish().map_err(|message| InputError::new(name, message))?;
-    Ok(strokes)
+    Ok((strokes.into_inner(), warnings))
 }

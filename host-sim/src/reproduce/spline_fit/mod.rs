@@ -15,7 +15,7 @@ use crate::job::Job;
 use crate::path::{Path, PathPiece};
 use crate::plan::course::Place;
 use crate::plan::{Limits, Plan, plan};
-use crate::strokes::Strokes;
+use crate::strokes::{Strokes, Tooling};
 use crate::units::Units;
 use crate::vector::Vector;
 
@@ -183,7 +183,7 @@ fn claims(runs: &[Run]) -> Vec<Claim> {
 
 /// The program in one way, as strokes.
 pub fn strokes(way: Way) -> Result<Strokes, InputError> {
-    let mut strokes = crate::strokes::read(NAME, job::program().as_bytes(), way.lines())?;
+    let (mut strokes, _) = crate::strokes::read(NAME, job::program().as_bytes(), way.lines(), &Tooling::default())?;
     if way == Way::MicroArcs {
         ways::forget_what_comes(&mut strokes, &LIMITS);
     }
