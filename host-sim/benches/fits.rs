@@ -85,11 +85,12 @@ fn fitted(chains: &Chains, kind: Kind) -> usize {
     chains.iter().map(|chain| fit(black_box(chain), kind, TOLERANCE).parts.len()).sum()
 }
 
-fn simplified(chains: &Chains, level: SimplifyOptLevel) -> usize {
+fn simplified(chains: &Chains, is_optimised: bool) -> usize {
     let of = |chain: &Vec<Vector>| {
         let mut path = kurbo::BezPath::new();
         path.move_to((chain[0].0[0], chain[0].0[1]));
         chain[1..].iter().for_each(|point| path.line_to((point.0[0], point.0[1])));
+        let level = if is_optimised { SimplifyOptLevel::Optimize } else { SimplifyOptLevel::Subdivide };
         let options = SimplifyOptions::default().opt_level(level);
         simplify_bezpath(path, TOLERANCE, &options).elements().len() - 1
     };
@@ -158,8 +159,8 @@ fn tables() {
             continue;
         }
         let (time, ours) = seconds(|| fitted(&chains, Kind::Ph));
-        let (subdivision, divided) = seconds(|| simplified(&chains, SimplifyOptLevel::Subdivide));
-        let optimised = (count <= MOST).then(|| seconds(|| simplified(&chains, SimplifyOptLevel::Optimize)));
+        let (subdivision, divided) = seconds(|| simplified(&chains, false));
+        let optimised = (count <= MOST).then(|| seconds(|| simplified(&chains, true)));
         let optimised =
             optimised.map_or(format!("{:>18}", "-"), |(time, segments)| format!("{segments:8}{:10.2}", time * 1e3));
         println!(

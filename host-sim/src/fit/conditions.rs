@@ -73,10 +73,6 @@ pub(super) const SAG: f64 = 0.125;
 /// How often a piece of a curve is halved where its hull is too far from its segment.
 const HALVINGS: u32 = 4;
 
-/// Vertices are looked at from the middle outwards, this often halving the stride, before all of them are: a curve that does not follow is
-/// mostly found there.
-const PROBES: u32 = 4;
-
 /// Walks along a curve and the polyline from one of `ends` over `inner` to the other, whose ends stand for its ends. `feet` are guesses of the
 /// foot points of `inner` from 0 to 1, which are improved. None as soon as something is farther off than `most`.
 pub(super) fn walk(
@@ -88,19 +84,6 @@ pub(super) fn walk(
     most: f64,
 ) -> Option<Walk> {
     let still = STILL * tolerance;
-    for probe in 1..=PROBES {
-        let stride = inner.len() >> probe;
-        if stride < 4 {
-            break;
-        }
-        for k in (stride..inner.len()).step_by(2 * stride) {
-            let (foot, off) = foot(curve, inner[k], feet[k], still);
-            feet[k] = foot;
-            if off > most {
-                return None;
-            }
-        }
-    }
     let sag = SAG * curve.bend();
     let [start, end] = [(0.0, ends[0]), (1.0, ends[1])].map(|(t, end)| (curve.at(t).point - end).norm());
     let mut found = Walk { deviation: start.max(end), vertices: start.max(end) };
