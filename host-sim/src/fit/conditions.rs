@@ -89,14 +89,14 @@ pub(super) fn walk(
     let mut found = Walk { deviation: start.max(end), vertices: start.max(end) };
     let (mut before, mut behind, mut distance) = (ends[0], 0.0, start);
     let last = (ends[1], 1.0, end);
-    for k in 0..=inner.len() {
-        let (point, t, off) = match inner.get(k) {
-            Some(&point) => {
-                let (mut t, mut off) = foot(curve, point, feet[k], still);
+    for vertex in inner.iter().zip(feet).map(Some).chain([None]) {
+        let (point, t, off) = match vertex {
+            Some((&point, guess)) => {
+                let (mut t, mut off) = foot(curve, point, *guess, still);
                 if t < behind {
                     (t, off) = (behind, (curve.at(behind).point - point).norm());
                 }
-                feet[k] = t;
+                *guess = t;
                 (point, t, off)
             }
             None => last,
@@ -168,7 +168,7 @@ fn foot(curve: &impl Course, point: Vector, guess: f64, still: f64) -> (f64, f64
 
 /// How far a piece is from a segment at the most; where that is not within the tolerance, something above it.
 fn hull<const N: usize>(piece: &Bezier<N>, chord: &Chord, tolerance: f64, halvings: u32) -> f64 {
-    let mut bound = piece.from_chord(chord);
+    let mut bound = piece.distance_to(chord);
     if bound <= tolerance {
         return bound;
     }
