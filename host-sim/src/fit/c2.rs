@@ -139,15 +139,12 @@ pub(super) fn fit(line: &Polyline<'_>, first: usize, tolerance: f64, parts: &mut
     Ok(())
 }
 
+/// The ways of nodes, and the curves between them with their deviations.
+type Refined = (Vec<f64>, Vec<(RisingPh, f64)>);
+
 /// The spline with nodes where every so many spans end, and between those where the tolerance does not hold, with its deviations; and where its
 /// nodes are. None where it would have more than `most` curves.
-fn refined(
-    line: &Polyline<'_>,
-    fitted: &Fitted,
-    stride: usize,
-    most: usize,
-    tolerance: f64,
-) -> Option<(Vec<f64>, Vec<(RisingPh, f64)>)> {
+fn refined(line: &Polyline<'_>, fitted: &Fitted, stride: usize, most: usize, tolerance: f64) -> Option<Refined> {
     let mut ways: Vec<f64> = fitted.spans.iter().step_by(stride).map(|span| span.ends[0]).collect();
     ways.push(line.length());
     let mut scratch = Vec::new();
