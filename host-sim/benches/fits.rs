@@ -24,8 +24,10 @@ const TOLERANCE: f64 = 0.01;
 const RUNS: u32 = 15;
 /// A run that takes longer, in s, is not made again.
 const LONG: f64 = 1.0;
-/// The most points that kurbo's optimiser is given: of a circle of 10 000 it takes minutes.
-const MOST: usize = 3_000;
+/// The most points of programs that kurbo's optimiser is given: with more it takes minutes.
+const MOST: usize = 1_000;
+/// Where lines turn by more than this, in radians, kurbo begins a new curve. By itself it takes each vertex of a program for a corner.
+const CORNER: f64 = 0.4;
 /// Programs of fewer points say nothing about time.
 const FEWEST: usize = 300;
 
@@ -85,21 +87,22 @@ fn fitted(chains: &Chains, kind: Kind) -> usize {
     chains.iter().map(|chain| fit(black_box(chain), kind, TOLERANCE).parts.len()).sum()
 }
 
-fn simplified(chains: &Chains, level: SimplifyOptLevel) -> usize {
+fn simplified(chains: &Chains, is_optimised: bool) -> usize {
     let of = |chain: &Vec<Vector>| {
         let mut path = kurbo::BezPath::new();
         path.move_to((chain[0].0[0], chain[0].0[1]));
         chain[1..].iter().for_each(|point| path.line_to((point.0[0], point.0[1])));
-        let options = SimplifyOptions::default().opt_level(level);
+        let level = if is_optimised { SimplifyOptLevel::Optimize } else { SimplifyOptLevel::Subdivide };
+        let options = SimplifyOptions::default().opt_level(level).angle_thresh(CORNER);
         simplify_bezpath(path, TOLERANCE, &options).elements().len() - 1
     };
     chains.iter().map(of).sum()
 }
 
-/// The chains at one height.
+/// The parts of chains that are at one height.
 fn flat(chains: &Chains) -> Chains {
-    let is_flat = |chain: &&Vec<Vector>| chain.iter().all(|point| point.0[2] == chain[0].0[2]);
-    chains.iter().filter(is_flat).cloned().collect()
+    let parts = chains.iter().flat_map(|chain| chain.chunk_by(|a, b| a.0[2] == b.0[2]));
+    parts.filter(|part| part.len() > 1).map(<[Vector]>::to_vec).collect()
 }
 
 fn example() -> Chains {
@@ -158,8 +161,8 @@ fn tables() {
             continue;
         }
         let (time, ours) = seconds(|| fitted(&chains, Kind::Ph));
-        let (subdivision, divided) = seconds(|| simplified(&chains, SimplifyOptLevel::Subdivide));
-        let optimised = (count <= MOST).then(|| seconds(|| simplified(&chains, SimplifyOptLevel::Optimize)));
+        let (subdivision, divided) = seconds(|| simplified(&chains, false));
+        let optimised = (count <= MOST).then(|| seconds(|| simplified(&chains, true)));
         let optimised =
             optimised.map_or(format!("{:>18}", "-"), |(time, segments)| format!("{segments:8}{:10.2}", time * 1e3));
         println!(

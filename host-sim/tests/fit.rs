@@ -115,6 +115,22 @@ fn arcs_are_a_contour() {
     assert!((lengths[0] / lengths[1] - 1.0).abs() < 1e-3, "{lengths:?}");
 }
 
+/// The picture says how many lines became how many curves; the plunge, seen from above, is a point. A C2 spline goes to the contour form.
+#[test]
+fn a_fit_is_drawn() {
+    let program = file("fit-drawn.ngc", HEART);
+    for (curve, words) in [("ph", "16 PH curves, within 0.01 mm"), ("arc", "lines and arcs"), ("ph-c2", "PH curves")] {
+        let picture = nowhere(&format!("fit-drawn-{curve}.svg"));
+        let contour = nowhere(&format!("fit-drawn-{curve}.toml"));
+        let files = [&picture, &contour].map(|path| path.to_str().unwrap());
+        let options = ["--tolerance", "0.01", "--curve", curve, "--svg", files[0], "-o", files[1], "--json", "-"];
+        found(&run("fit", &program, &options));
+        let text = std::fs::read_to_string(&picture).unwrap();
+        assert!(text.starts_with("<svg") && text.contains("720 lines") && text.contains(words), "{curve}");
+        found(&run("simulate", &contour, &["--json", "-"]));
+    }
+}
+
 /// Lines along a circle and along a helix are one arc each, written as G3 and read back as one.
 #[test]
 fn a_circle_and_a_helix_are_one_arc() {

@@ -236,5 +236,5 @@ fn bow(start: Vector, direction: Flat, end: Vector) -> Option<(Curve, Flat)> {
     }
     let chord = flat(end - start);
     let is_straight = cross(direction, chord).abs() < STRAIGHT * dot(direction, chord);
-    is_straight.then(|| (Curve::Line(Bezier { points: [start, end] }), direction))
+    is_straight.then_some((Curve::Line(Bezier { points: [start, end] }), direction))
 }

@@ -120,38 +120,49 @@ fn tridiagonal(rows: &mut [[Plane; 3]], right: &mut [Plane]) -> Option<()> {
     Some(())
 }
 
-/// Fits a run of at least two points with nodes on a B-spline through it, at first where its spans end, and between those where the tolerance
-/// does not hold. Where no such spline follows, and where the way goes straight up or down, the curves of [`ph::fit`] stay. The error is as
+/// Fits a run of at least two points with nodes on a B-spline through it, at first where every second span ends, and between those where the
+/// tolerance does not hold. Where no such spline follows, and where the way goes straight up or down, the curves of [`ph::fit`] stay. The error is as
 /// that of [`bspline::fit`].
 pub(super) fn fit(line: &Polyline<'_>, first: usize, tolerance: f64, parts: &mut Vec<Part>) -> Result<(), usize> {
     let fitted = bspline::fit(line, SPLINE * tolerance)?;
-    let mut ways: Vec<f64> = fitted.spans.iter().map(|span| span.ends[0]).collect();
+    // A PH quintic follows farther than a cubic, and may be farther off: every second node may do.
+    let lines = line.points.len() - 1;
+    let found = [(2, fitted.spans.len().min(lines)), (1, lines)]
+        .into_iter()
+        .find_map(|(stride, most)| refined(line, &fitted, stride, most, tolerance));
+    let Some((ways, curves)) = found else { return ph::fit(line, first, tolerance, parts) };
+    let vertex = |way: f64| first + line.segment(way) + usize::from(way >= line.length());
+    parts.extend(curves.into_iter().zip(ways.windows(2)).enumerate().map(|(k, ((curve, deviation), ends))| {
+        let vertices = [vertex(ends[0]), vertex(ends[1])];
+        Part { curve: Curve::Ph(curve), vertices, deviation, is_smooth: k > 0 }
+    }));
+    Ok(())
+}
+
+/// The ways of nodes, and the curves between them with their deviations.
+type Refined = (Vec<f64>, Vec<(RisingPh, f64)>);
+
+/// The spline with nodes where every so many spans end, and between those where the tolerance does not hold, with its deviations; and where its
+/// nodes are. None where it would have more than `most` curves.
+fn refined(line: &Polyline<'_>, fitted: &Fitted, stride: usize, most: usize, tolerance: f64) -> Option<Refined> {
+    let mut ways: Vec<f64> = fitted.spans.iter().step_by(stride).map(|span| span.ends[0]).collect();
     ways.push(line.length());
     let mut scratch = Vec::new();
     for _ in 0..ROUNDS {
-        if ways.len() > line.points.len() {
-            break;
+        if ways.len() - 1 > most {
+            return None;
         }
-        let Some(curves) = through(&fitted, &ways) else { break };
-        let deviations: Vec<f64> = curves
-            .iter()
-            .zip(ways.windows(2))
-            .map(|(curve, ends)| {
-                across(line, &Polynomial::new(&curve.bezier()), [ends[0], ends[1]], tolerance, &mut scratch)
-            })
-            .collect();
-        if deviations.iter().all(|&deviation| deviation <= tolerance) {
-            let vertex = |way: f64| first + line.segment(way) + usize::from(way >= line.length());
-            parts.extend(curves.into_iter().zip(deviations).zip(ways.windows(2)).enumerate().map(
-                |(k, ((curve, deviation), ends))| {
-                    let vertices = [vertex(ends[0]), vertex(ends[1])];
-                    Part { curve: Curve::Ph(curve), vertices, deviation, is_smooth: k > 0 }
-                },
-            ));
-            return Ok(());
+        let measured = |(curve, ends): (RisingPh, &[f64])| {
+            let bezier = curve.bezier();
+            (curve, across(line, &Polynomial::new(&bezier), [ends[0], ends[1]], tolerance, &mut scratch))
+        };
+        let curves: Vec<(RisingPh, f64)> =
+            through(fitted, &ways)?.into_iter().zip(ways.windows(2)).map(measured).collect();
+        if curves.iter().all(|(_, deviation)| *deviation <= tolerance) {
+            return Some((ways, curves));
         }
         let mut finer = Vec::with_capacity(2 * ways.len());
-        for (ends, deviation) in ways.windows(2).zip(&deviations) {
+        for (ends, (_, deviation)) in ways.windows(2).zip(&curves) {
             finer.push(ends[0]);
             if deviation.is_nan() || *deviation > tolerance {
                 finer.push(0.5 * (ends[0] + ends[1]));
@@ -160,7 +171,7 @@ pub(super) fn fit(line: &Polyline<'_>, first: usize, tolerance: f64, parts: &mut
         finer.push(line.length());
         ways = finer;
     }
-    ph::fit(line, first, tolerance, parts)
+    None
 }
 
 /// The spline whose nodes are on a B-spline, at these ways.

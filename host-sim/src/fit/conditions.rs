@@ -73,10 +73,6 @@ pub(super) const SAG: f64 = 0.125;
 /// How often a piece of a curve is halved where its hull is too far from its segment.
 const HALVINGS: u32 = 4;
 
-/// Vertices are looked at from the middle outwards, this often halving the stride, before all of them are: a curve that does not follow is
-/// mostly found there.
-const PROBES: u32 = 4;
-
 /// Walks along a curve and the polyline from one of `ends` over `inner` to the other, whose ends stand for its ends. `feet` are guesses of the
 /// foot points of `inner` from 0 to 1, which are improved. None as soon as something is farther off than `most`.
 pub(super) fn walk(
@@ -88,32 +84,19 @@ pub(super) fn walk(
     most: f64,
 ) -> Option<Walk> {
     let still = STILL * tolerance;
-    for probe in 1..=PROBES {
-        let stride = inner.len() >> probe;
-        if stride < 4 {
-            break;
-        }
-        for k in (stride..inner.len()).step_by(2 * stride) {
-            let (foot, off) = foot(curve, inner[k], feet[k], still);
-            feet[k] = foot;
-            if off > most {
-                return None;
-            }
-        }
-    }
     let sag = SAG * curve.bend();
     let [start, end] = [(0.0, ends[0]), (1.0, ends[1])].map(|(t, end)| (curve.at(t).point - end).norm());
     let mut found = Walk { deviation: start.max(end), vertices: start.max(end) };
     let (mut before, mut behind, mut distance) = (ends[0], 0.0, start);
     let last = (ends[1], 1.0, end);
-    for k in 0..=inner.len() {
-        let (point, t, off) = match inner.get(k) {
-            Some(&point) => {
-                let (mut t, mut off) = foot(curve, point, feet[k], still);
+    for vertex in inner.iter().zip(feet).map(Some).chain([None]) {
+        let (point, t, off) = match vertex {
+            Some((&point, guess)) => {
+                let (mut t, mut off) = foot(curve, point, *guess, still);
                 if t < behind {
                     (t, off) = (behind, (curve.at(behind).point - point).norm());
                 }
-                feet[k] = t;
+                *guess = t;
                 (point, t, off)
             }
             None => last,
@@ -185,7 +168,7 @@ fn foot(curve: &impl Course, point: Vector, guess: f64, still: f64) -> (f64, f64
 
 /// How far a piece is from a segment at the most; where that is not within the tolerance, something above it.
 fn hull<const N: usize>(piece: &Bezier<N>, chord: &Chord, tolerance: f64, halvings: u32) -> f64 {
-    let mut bound = piece.from_chord(chord);
+    let mut bound = piece.distance_to(chord);
     if bound <= tolerance {
         return bound;
     }

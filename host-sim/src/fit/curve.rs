@@ -79,11 +79,11 @@ impl<const N: usize> Bezier<N> {
     /// The largest distance of its control points from the segment between two points: no point of the curve is farther from it, since a
     /// distance from a segment is a convex function.
     pub fn from_segment(&self, from: Vector, to: Vector) -> f64 {
-        self.from_chord(&Chord::new(from, to))
+        self.distance_to(&Chord::new(from, to))
     }
 
     /// As [`Bezier::from_segment`].
-    pub(super) fn from_chord(&self, chord: &Chord) -> f64 {
+    pub(super) fn distance_to(&self, chord: &Chord) -> f64 {
         self.points.iter().map(|&point| chord.square_from(point)).fold(0.0, f64::max).sqrt()
     }
 

@@ -116,10 +116,12 @@ impl Span {
         let g = |i: usize, j: usize| if i <= j { self.matrix[i][j] } else { self.matrix[j][i] };
         let product: [[f64; 4]; 4] =
             std::array::from_fn(|i| std::array::from_fn(|k| (0..4).map(|j| g(i, j) * parts[j][k]).sum()));
-        for row in 0..4 {
-            let sum = |column: usize| (0..4).map(|i| parts[i][row] * product[i][column]).sum();
+        let columns: [[f64; 4]; 4] = std::array::from_fn(|row| parts.map(|line| line[row]));
+        for (row, weights) in columns.into_iter().enumerate() {
+            let sum = |column: usize| weights.iter().zip(&product).map(|(weight, line)| weight * line[column]).sum();
             let entries = std::array::from_fn(|step| if row + step < 4 { sum(row + step) } else { 0.0 });
-            let right = (0..4).fold(Vector::default(), |all, i| all + self.right[i] * parts[i][row]);
+            let terms = self.right.iter().zip(weights);
+            let right = terms.fold(Vector::default(), |all, (&right, weight)| all + right * weight);
             band.add_row(first + row, &entries, right);
         }
     }
