@@ -35,6 +35,7 @@ mod polyline;
 pub mod program;
 mod seam;
 mod spans;
+mod straights;
 mod tangent;
 
 use std::ops::Range;
@@ -46,6 +47,7 @@ use corners::Vertex;
 use curve::{Bezier, Cubic};
 use ph::RisingPh;
 use polyline::Polyline;
+use straights::{Straight, straights};
 use vector::{Chord, Vector};
 
 /// What is laid through a polyline.
@@ -120,7 +122,9 @@ pub fn fit(points: &[Vector], kind: Kind, tolerance: f64) -> Fit {
     let mut from = 0;
     for to in (1..points.len()).filter(|&k| kinds[k] == Vertex::Corner) {
         let held = [seam.filter(|_| from == 0), seam.filter(|_| to + 1 == points.len())];
-        is_closed &= smooth(points, [from, to], kind, tolerance, held, &mut found);
+        if !with_straights(points, [from, to], kind, tolerance, held, &mut found) {
+            is_closed &= smooth(points, [from, to], kind, tolerance, held, &mut found);
+        }
         from = to;
     }
     // The curvature at the ends of a C2 PH spline is its own.
@@ -128,6 +132,60 @@ pub fn fit(points: &[Vector], kind: Kind, tolerance: f64) -> Fit {
         part.is_smooth = true;
     }
     found
+}
+
+/// Fits the vertices between two corners so that long straight segments stay. Where nothing is straight, or where that gives more curves than
+/// lines, nothing is done. Whether it is.
+fn with_straights(
+    points: &[Vector],
+    [from, to]: [usize; 2],
+    kind: Kind,
+    tolerance: f64,
+    held: [Option<[Vector; 2]>; 2],
+    found: &mut Fit,
+) -> bool {
+    // The curvature at the ends of a C2 PH spline is its own.
+    let straights = if kind == Kind::PhC2 { Vec::new() } else { straights(points, from..to + 1, tolerance) };
+    if straights.is_empty() {
+        return false;
+    }
+    let (parts, splines) = (found.parts.len(), found.splines.len());
+    let mut is_kept = true;
+    // Where the next curve begins: a vertex, the point in its place, and the derivatives there.
+    let mut start = (from, points[from], held[0]);
+    let along = |straight: &Straight| Some([straight.direction, Vector::default()]);
+    let mut curve = |start: (usize, Vector, Option<[Vector; 2]>), end: (usize, Vector, Option<[Vector; 2]>), found: &mut Fit| {
+        let mut run = points[start.0..=end.0].to_vec();
+        let last = run.len() - 1;
+        (run[0], run[last]) = (start.1, end.1);
+        let first = found.parts.len();
+        is_kept &= smooth(&run, [0, last], kind, tolerance, [start.2, end.2], found);
+        for part in &mut found.parts[first..] {
+            part.vertices = part.vertices.map(|vertex| vertex + start.0);
+        }
+        if let Some(part) = found.parts.get_mut(first).filter(|_| first > parts) {
+            part.is_smooth = true;
+        }
+    };
+    for straight in &straights {
+        let Straight { segment, ends, is_led, .. } = *straight;
+        if is_led[0] {
+            curve(start, (segment + 1, ends[0], along(straight)), found);
+        }
+        let is_smooth = found.parts.len() > parts;
+        let line = Curve::Line(Bezier { points: ends });
+        found.parts.push(Part { curve: line, vertices: [segment, segment + 1], deviation: 0.0, is_smooth });
+        start = (segment, ends[1], along(straight));
+    }
+    if straights.last().is_some_and(|straight| straight.is_led[1]) {
+        curve(start, (to, points[to], held[1]), found);
+    }
+    is_kept &= found.parts.len() - parts <= to - from;
+    if !is_kept {
+        found.parts.truncate(parts);
+        found.splines.truncate(splines);
+    }
+    is_kept
 }
 
 /// How far points are from the segment between the first and the last of them, where that is within the tolerance.
