@@ -24,8 +24,8 @@ const TOLERANCE: f64 = 0.01;
 const RUNS: u32 = 15;
 /// A run that takes longer, in s, is not made again.
 const LONG: f64 = 1.0;
-/// The most points of programs that kurbo's optimiser is given: with more it takes minutes.
-const MOST: usize = 1_000;
+/// The most points of programs that kurbo is given by subdivision, and for its optimiser: with more it takes minutes.
+const MOST: [usize; 2] = [3_000, 1_000];
 /// Where lines turn by more than this, in radians, kurbo begins a new curve. By itself it takes each vertex of a program for a corner.
 const CORNER: f64 = 0.4;
 /// Programs of fewer points say nothing about time.
@@ -161,16 +161,12 @@ fn tables() {
             continue;
         }
         let (time, ours) = seconds(|| fitted(&chains, Kind::Ph));
-        let (subdivision, divided) = seconds(|| simplified(&chains, false));
-        let optimised = (count <= MOST).then(|| seconds(|| simplified(&chains, true)));
-        let optimised =
-            optimised.map_or(format!("{:>18}", "-"), |(time, segments)| format!("{segments:8}{:10.2}", time * 1e3));
-        println!(
-            "{name:36} {count:6}  {ours:6}{:10.2} {divided:8}{:10.2} {optimised} {:10.0}",
-            time * 1e3,
-            subdivision * 1e3,
-            count as f64 / time
-        );
+        let theirs = [false, true].map(|is_optimised| {
+            let is_given = count <= MOST[usize::from(is_optimised)];
+            let found = is_given.then(|| seconds(|| simplified(&chains, is_optimised)));
+            found.map_or(format!("{:>18}", "-"), |(time, segments)| format!("{segments:8}{:10.2}", time * 1e3))
+        });
+        println!("{name:36} {count:6}  {ours:6}{:10.2} {} {:10.0}", time * 1e3, theirs.join(" "), count as f64 / time);
     }
     println!();
 }
