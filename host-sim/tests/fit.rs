@@ -119,7 +119,7 @@ fn arcs_are_a_contour() {
 #[test]
 fn a_fit_is_drawn() {
     let program = file("fit-drawn.ngc", HEART);
-    for (curve, words) in [("ph", "16 PH curves, within 0.01 mm"), ("arc", "lines and arcs"), ("ph-c2", "PH curves")] {
+    for (curve, words) in [("ph", "18 PH curves, within 0.01 mm"), ("arc", "lines and arcs"), ("ph-c2", "PH curves")] {
         let picture = nowhere(&format!("fit-drawn-{curve}.svg"));
         let contour = nowhere(&format!("fit-drawn-{curve}.toml"));
         let files = [&picture, &contour].map(|path| path.to_str().unwrap());
@@ -156,6 +156,33 @@ fn a_circle_and_a_helix_are_one_arc() {
     }
 }
 
+/// The path beside a contour is written, and read back as what it is: a square of 20 mm with a tool of 6 mm on its left, by a table.
+#[test]
+fn a_tools_path_is_written() {
+    let square = "G21 G90 F300\nG0 X-10 Y0\nG41 D2\nG1 X0 Y0\nX20\nY20\nX0\nY0\nG40\nG0 X-10 Y0\n";
+    let program = file("fit-beside-square.ngc", square);
+    let table = file("fit-tools.tbl", "T1 P1 D3.0\nT2 P2 Z10 D6.0 ;the one that is meant\n");
+    let written = nowhere("fit-beside-written.ngc");
+    let options =
+        ["--tolerance", "0.01", "--curve", "arc", "--tools", table.to_str().unwrap(), "-o", written.to_str().unwrap()];
+    assert!(run("fit", &program, &options).status.success());
+    // Inside on its left: the sides less the tool's width.
+    let text = std::fs::read_to_string(&written).unwrap();
+    assert!(text.contains("X17") && text.contains("Y17") && text.contains("Y3"), "{text}");
+    let missing = run("simulate", &program, &[]);
+    assert_eq!(missing.status.code(), Some(2));
+    says("missing", &String::from_utf8(missing.stderr).unwrap(), &["tool 2", "--tools"]);
+    let found = found(&run("simulate", &program, &["--tools", table.to_str().unwrap(), "--json", "-"]));
+    assert!(found["contact_length"].as_f64().unwrap() > 70.0);
+    // A slot that is narrower than the tool is left out with a word, and refused where that is wanted.
+    let slot = "G21 G90 F300\nG0 X-20 Y-10\nG42.1 D6\nG1 X0 Y-10\nX10\nY-2\nX12\nY-10\nX30\nG40\nG0 Y-20\n";
+    let slot = file("fit-slot.ngc", slot);
+    let trimmed = run("simulate", &slot, &[]);
+    assert!(trimmed.status.success(), "{}", String::from_utf8_lossy(&trimmed.stderr));
+    says("slot", &String::from_utf8(trimmed.stderr).unwrap(), &["warning", "fit-slot.ngc"]);
+    assert_eq!(run("simulate", &slot, &["--gouge", "error"]).status.code(), Some(2));
+}
+
 #[test]
 fn bad_input_is_a_sentence() {
     let heart = file("fit-bad.ngc", HEART);
@@ -163,7 +190,7 @@ fn bad_input_is_a_sentence() {
     let two = file("fit-two.ngc", "G21 F100\nG1 X10\nG0 X20\nG1 Y10\n");
     let part = file("fit-part.xyz", "G1 X1\n");
     let rise = file("fit-rise.ngc", "G21 F100\nG2 X2 Y0 I1 Z5\n");
-    let beside = file("fit-beside.ngc", "G21 F100\nG41.1 D6\nG1 X10\nG1 Y10\n");
+    let beside = file("fit-beside.ngc", "G21 F100\nG41 D6\nG1 X10\nG1 Y10\n");
     let toml = nowhere("fit-bad.toml");
     let toml = toml.to_str().unwrap();
     let mpf = nowhere("fit-bad.mpf");
@@ -176,8 +203,8 @@ fn bad_input_is_a_sentence() {
         ("words", &heart, &["--tolerance", "0.01", "--curve", "ph", "-o", mpf], &["PH", ".toml", "bspline"]),
         ("block", &broken, &["--tolerance", "0.01", "--curve", "bspline", "-o", mpf], &["fit-broken.ngc:4:"]),
         ("contours", &two, &["--tolerance", "0.01", "-o", toml], &["2 contours", "--contour 0 to 1"]),
-        ("compensated", &beside, &["--tolerance", "0.01", "-o", toml], &["fit-beside.ngc:2:", "compensation"]),
-        ("compensated program", &beside, &["--tolerance", "0.01", "--curve", "bezier", "-o", mpf], &["compensation"]),
+        ("compensated", &beside, &["--tolerance", "0.01", "-o", toml], &["fit-beside.ngc:2:", "tool 6", "--tools"]),
+        ("compensated program", &beside, &["--tolerance", "0.01", "--curve", "bezier", "-o", mpf], &["tool 6"]),
         ("height", &rise, &["--tolerance", "0.01", "-o", toml], &["fit-rise.ngc:2:", "height"]),
     ];
     for (name, input, options, words) in cases {

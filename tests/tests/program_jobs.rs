@@ -14,7 +14,7 @@ use host_sim::path::Path;
 use host_sim::plan::{Limits, Manner, Recorder, planned};
 use host_sim::program::{self, Action, Motion, Plane};
 use host_sim::simulate::run;
-use host_sim::strokes::{self, Entry, Lines, Pace, What};
+use host_sim::strokes::{self, Entry, Lines, Pace, Tooling, What};
 use host_sim::units::Units;
 use host_sim::vector::Vector;
 use shared::piece::Order;
@@ -62,13 +62,14 @@ fn way() -> Vec<Vector> {
 }
 
 fn job(text: &str, lines: Lines) -> Job {
-    Job::from_strokes("part.ngc", strokes::read("part.ngc", text.as_bytes(), lines).unwrap()).unwrap()
+    let (strokes, _) = strokes::read("part.ngc", text.as_bytes(), lines, &Tooling::default()).unwrap();
+    Job::from_strokes("part.ngc", strokes).unwrap()
 }
 
 /// The setpoints of a planned run are on the program's way, all of it is passed, and no axis is asked for more than it bears.
 #[test]
 fn the_tick_runs_a_whole_program() {
-    let job = job(PROGRAM, Lines::FittedAsTold(Kind::Ph, 0.01));
+    let job = job(PROGRAM, Lines::FittedAsTold(Kind::Drivable, 0.01));
     let path = Path::new(&job, Order::First).unwrap();
     let machine = machine::from_toml("machine.toml", MACHINE).unwrap();
     let limits = Limits::of(&machine, &Default::default()).unwrap();
@@ -183,10 +184,10 @@ fn programs_of_others_become_paths() {
         if all.is_err() || !is_plain {
             continue;
         }
-        let job = Job::from_strokes(
-            name,
-            strokes::read(name, input(), Lines::FittedAsTold(Kind::Ph, 0.01)).unwrap_or_else(|e| panic!("{e}")),
-        );
+        let lines = Lines::FittedAsTold(Kind::Drivable, 0.01);
+        let (strokes, _) =
+            strokes::read(name, input(), lines, &Tooling::default()).unwrap_or_else(|error| panic!("{error}"));
+        let job = Job::from_strokes(name, strokes);
         let mut job = job.unwrap_or_else(|e| panic!("{e}"));
         for stroke in job.strokes.iter_mut().filter(|stroke| stroke.pace == Pace::Unset) {
             stroke.pace = Pace::Feed(10.0);

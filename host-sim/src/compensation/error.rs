@@ -130,7 +130,7 @@ impl fmt::Display for Warning {
 impl fmt::Display for Fault {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match *self {
-            Self::NoTool(number) => write!(f, "tool {number} is not in the tool table; add it there, or give D with G41.1 or G42.1"),
+            Self::NoTool(number) => write!(f, "tool {number} is in no tool table; add it to the one that --tools names, or give D with G41.1 or G42.1"),
             Self::NothingLoaded => {
                 f.write_str("no tool is loaded for cutter compensation; put one in with T and M6, or give D")
             }

@@ -23,6 +23,9 @@ pub(super) enum Vertex {
 /// much as the others, and an arc of so few chords is nobody's curve.
 const ABRUPT: f64 = 0.4;
 
+/// See [`is_alone`].
+const ALONE: f64 = 4.0;
+
 /// The vertices of a polyline without repeated points.
 pub(super) fn vertices(points: &[Vector], tolerance: f64) -> Vec<Vertex> {
     let of = |k: usize| {
@@ -30,6 +33,7 @@ pub(super) fn vertices(points: &[Vector], tolerance: f64) -> Vec<Vertex> {
             return Vertex::Corner;
         };
         match sagittas(before, points[k], *after).map(|sagitta| sagitta > tolerance) {
+            [false, false] if is_alone(points, k) => Vertex::Corner,
             [false, false] => Vertex::Smooth,
             [true, true] => Vertex::Corner,
             [straight, _] if turn(before, points[k], *after) < ABRUPT => Vertex::Tangent { before: straight },
@@ -37,6 +41,17 @@ pub(super) fn vertices(points: &[Vector], tolerance: f64) -> Vec<Vertex> {
         }
     };
     (0..points.len()).map(of).collect()
+}
+
+/// Whether the way turns abruptly at a vertex, and more than [`ALONE`] times as much as at both of its neighbours: between short segments a
+/// corner deflects by less than any tolerance, and yet is one.
+fn is_alone(points: &[Vector], k: usize) -> bool {
+    let turn_at = |k: usize| match points.get(k.wrapping_sub(1)..k.wrapping_add(2)) {
+        Some(&[a, b, c]) => turn(a, b, c),
+        _ => 0.0,
+    };
+    let here = turn_at(k);
+    here > ABRUPT && here > ALONE * turn_at(k.wrapping_sub(1)).max(turn_at(k + 1))
 }
 
 fn turn(a: Vector, b: Vector, c: Vector) -> f64 {
@@ -86,5 +101,20 @@ mod tests {
         assert_eq!(kinds[1], Vertex::Tangent { before: true });
         assert!(kinds[2..9].iter().all(|&kind| kind == Vertex::Smooth));
         assert_eq!([kinds[0], kinds[9], kinds[10]], [Vertex::Corner; 3]);
+    }
+
+    /// Steps of 0.01 mm around a right angle: a corner under any tolerance. The vertices of a hexagon of that size are none under 0.1 mm.
+    #[test]
+    fn a_corner_between_short_segments_is_one() {
+        let points: Vec<Vector> =
+            (-5..=5).map(|k| f64::from(k) * 0.01).map(|x| Vector([x.min(0.0), x.max(0.0), 0.0])).collect();
+        for (k, kind) in vertices(&points, 0.1).into_iter().enumerate().skip(1).take(9) {
+            assert_eq!(kind, if k == 5 { Vertex::Corner } else { Vertex::Smooth }, "{k}");
+        }
+        let hexagon: Vec<Vector> = (0..7)
+            .map(|k| f64::from(k) * std::f64::consts::FRAC_PI_3)
+            .map(|a| Vector([0.01 * a.cos(), 0.01 * a.sin(), 0.0]))
+            .collect();
+        assert!(vertices(&hexagon, 0.1)[1..6].iter().all(|&kind| kind == Vertex::Smooth));
     }
 }

@@ -59,6 +59,9 @@ pub enum Kind {
     Bspline,
     /// PH quintics with continuous curvature in x and y, along which z goes; cubic B-splines where the way is straight up or down.
     Ph,
+    /// What jobs are made of: [`Kind::Ph`] where z stays, [`Kind::Bspline`] where it does not. The tick moves z evenly along a PH curve, and
+    /// splines through a relief are run faster.
+    Drivable,
     /// As [`Kind::Ph`], with two continuous derivatives between two corners.
     PhC2,
     /// Lines and circular arcs, continuous in direction where no corner is; z goes along evenly.
@@ -154,19 +157,20 @@ fn with_straights(
     // Where the next curve begins: a vertex, the point in its place, and the derivatives there.
     let mut start = (from, points[from], held[0]);
     let along = |straight: &Straight| Some([straight.direction, Vector::default()]);
-    let mut curve = |start: (usize, Vector, Option<[Vector; 2]>), end: (usize, Vector, Option<[Vector; 2]>), found: &mut Fit| {
-        let mut run = points[start.0..=end.0].to_vec();
-        let last = run.len() - 1;
-        (run[0], run[last]) = (start.1, end.1);
-        let first = found.parts.len();
-        is_kept &= smooth(&run, [0, last], kind, tolerance, [start.2, end.2], found);
-        for part in &mut found.parts[first..] {
-            part.vertices = part.vertices.map(|vertex| vertex + start.0);
-        }
-        if let Some(part) = found.parts.get_mut(first).filter(|_| first > parts) {
-            part.is_smooth = true;
-        }
-    };
+    let mut curve =
+        |start: (usize, Vector, Option<[Vector; 2]>), end: (usize, Vector, Option<[Vector; 2]>), found: &mut Fit| {
+            let mut run = points[start.0..=end.0].to_vec();
+            let last = run.len() - 1;
+            (run[0], run[last]) = (start.1, end.1);
+            let first = found.parts.len();
+            is_kept &= smooth(&run, [0, last], kind, tolerance, [start.2, end.2], found);
+            for part in &mut found.parts[first..] {
+                part.vertices = part.vertices.map(|vertex| vertex + start.0);
+            }
+            if let Some(part) = found.parts.get_mut(first).filter(|_| first > parts) {
+                part.is_smooth = true;
+            }
+        };
     for straight in &straights {
         let Straight { segment, ends, is_led, .. } = *straight;
         if is_led[0] {
@@ -224,6 +228,12 @@ fn smooth(
             is_kept &= !is_held;
             continue;
         }
+        // What a tick drives along: evenly along a PH curve, as it likes along a spline.
+        let kind = match kind {
+            Kind::Drivable if run.iter().all(|point| point.0[2] == run[0].0[2]) => Kind::Ph,
+            Kind::Drivable => Kind::Bspline,
+            kind => kind,
+        };
         let line = Polyline { held, ..Polyline::new(run) };
         let first = found.parts.len();
         let corner = if kind == Kind::Ph {

@@ -70,12 +70,16 @@ mod tests {
     #[test]
     fn a_side_between_two_bends_stays_straight() {
         let on = |k: i32| (0.1 * f64::from(k)).sin_cos();
-        let mut points: Vec<Vector> = (0..=8).rev().map(|k| on(-k)).map(|(s, c)| Vector([2.0 * s, 2.0 - 2.0 * c, 1.0])).collect();
+        let mut points: Vec<Vector> =
+            (0..=8).rev().map(|k| on(-k)).map(|(s, c)| Vector([2.0 * s, 2.0 - 2.0 * c, 1.0])).collect();
         points.extend((0..=8).map(on).map(|(s, c)| Vector([10.0 + 2.0 * s, 2.0 - 2.0 * c, 1.0])));
         let found = straights(&points, 0..points.len(), 0.01);
         let [Straight { segment: 8, ends, direction, is_led: [true, true] }] = found[..] else { panic!("{found:?}") };
         let lead = LEAD * 0.02_f64.sqrt();
-        assert!((ends[0] - Vector([lead, 0.0, 1.0])).norm() < 1e-9 && (ends[1] - Vector([10.0 - lead, 0.0, 1.0])).norm() < 1e-9);
+        assert!(
+            (ends[0] - Vector([lead, 0.0, 1.0])).norm() < 1e-9
+                && (ends[1] - Vector([10.0 - lead, 0.0, 1.0])).norm() < 1e-9
+        );
         assert!((direction - Vector([1.0, 0.0, 0.0])).norm() < 1e-12);
     }
 }

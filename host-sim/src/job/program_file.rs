@@ -27,7 +27,7 @@ pub(super) fn job(name: &str, tooling: &Tooling) -> Result<Job, InputError> {
     if program::is_drawing(name) {
         return drawing(name);
     }
-    let lines = Lines::FittedAsTold(Kind::Ph, TOLERANCE_MM);
+    let lines = Lines::FittedAsTold(Kind::Drivable, TOLERANCE_MM);
     let (strokes, warnings) = strokes::read(name, open(name)?, lines, tooling)?;
     of_strokes(name, strokes).map(|job| Job { warnings, ..job })
 }
@@ -98,7 +98,8 @@ pub(super) fn of_strokes(name: &str, Strokes { strokes, events, .. }: Strokes) -
 }
 
 /// What is said of a program that is offset already.
-const BESIDE: &str = "the program compensates for its tool itself, so there is no contour to offset; take G41 and G42 out";
+const BESIDE: &str =
+    "the program compensates for its tool itself, so there is no contour to offset; take G41 and G42 out";
 
 /// The contour form of a program. Errors: those of its reader, and a program that cuts no contour, or several.
 pub(super) fn source(name: &str) -> Result<Source, InputError> {

@@ -106,7 +106,8 @@ impl Strokes {
     pub fn centre(&mut self, piece: &CentrePiece) {
         let of = Of { feed: piece.feed, is_rapid: piece.is_rapid, line: piece.place[0] };
         if piece.offset == 0.0 && piece.interval == [0.0, 1.0] {
-            let [from, to] = [(piece.start(), piece.z[0]), (piece.end(), piece.z[1])].map(|(p, z)| Vector([p.re, p.im, z]));
+            let [from, to] =
+                [(piece.start(), piece.z[0]), (piece.end(), piece.z[1])].map(|(p, z)| Vector([p.re, p.im, z]));
             match piece.segment {
                 Segment::Line(_) => return self.line(from, to, of),
                 Segment::Arc(arc) => {

@@ -54,7 +54,8 @@ pub fn read(
         gouge: tooling.gouge,
         // A contour is fitted before it is offset, so that its offset is exact.
         lines: match lines {
-            Lines::Fitted(Kind::Ph, tolerance) | Lines::FittedAsTold(Kind::Ph, tolerance) => Some(tolerance),
+            Lines::Fitted(Kind::Ph | Kind::Drivable, tolerance)
+            | Lines::FittedAsTold(Kind::Ph | Kind::Drivable, tolerance) => Some(tolerance),
             _ => None,
         },
         ..compensation::Options::default()

@@ -171,8 +171,8 @@ fn each_fault_has_a_sentence() {
     let line = "g0 x-10 y0\ng42 g1 x0 y0\nx20\n";
     let of = |program: &str| sentence(program).split_once(": ").unwrap().1.lines().next().unwrap().to_string();
     assert!(of("g41 g1 x9").starts_with("no tool is loaded for cutter compensation;"));
-    assert!(of("g41 d7 g1 x9").starts_with("tool 7 is not in the tool table;"));
-    assert!(of("t9 m6\ng41 g1 x9").starts_with("tool 9 is not in the tool table;"));
+    assert!(of("g41 d7 g1 x9").starts_with("tool 7 is in no tool table;"));
+    assert!(of("t9 m6\ng41 g1 x9").starts_with("tool 9 is in no tool table;"));
     assert!(
         of("t4 m6\ng41 g1 x5\ny9\ng40")
             .contains("is 5 mm long; it needs more than the tool's radius of 6 mm (line 3, column")
