@@ -3,11 +3,14 @@
 use clap::Args;
 use host_sim::job::{Job, Units};
 use host_sim::measure::peaks::Verdict;
-use host_sim::path::Path;
+use host_sim::measure::piece_time;
+use host_sim::offset::Along;
+use host_sim::path::{Path, PathPiece};
 use host_sim::plan::caps::Reason;
 use host_sim::plan::{Course, Demand, Recorder, bound};
 use host_sim::report;
 use host_sim::simulate::run;
+use host_sim::strokes::Event;
 use serde::Serialize;
 use shared::machine::MachineSettings;
 
@@ -51,8 +54,19 @@ struct Found {
     #[serde(skip_serializing_if = "Option::is_none")]
     contour_error_budget: Option<f64>,
     limited_by: Vec<Share>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    events: Vec<Happening>,
     demand: Option<Demand>,
     units: Units,
+}
+
+/// Something that a program does beside moving: it is for a person, or for what stands around the controller.
+#[derive(Serialize)]
+struct Happening {
+    /// When the path is there, in s; the time that it takes itself is not in the plan.
+    time_s: f64,
+    line: usize,
+    what: String,
 }
 
 /// How much of the time something limits.
@@ -88,6 +102,7 @@ impl PlanVerb {
             contour_error: contour_error.map(|[found, _]| found / mm),
             contour_error_budget: contour_error.map(|[_, budget]| budget / mm),
             limited_by: plan.shares().into_iter().map(|(reason, time_s)| Share { reason, time_s }).collect(),
+            events: events(&job, path),
             demand,
             units: job.units,
         };
@@ -99,6 +114,25 @@ impl PlanVerb {
         }
         Ok(())
     }
+}
+
+/// Events that are printed.
+const SHOWN: usize = 12;
+
+/// When a planned path is where a program does something.
+fn events(job: &Job, path: &Path) -> Vec<Happening> {
+    let stroke = |piece: &PathPiece| match piece.along {
+        Along::Segment { segment, .. } => segment,
+        Along::Fill { node, .. } => node,
+    };
+    let (mut time, mut pieces) = (0.0, path.pieces.iter().peekable());
+    let of = |event: &Event| {
+        while let Some(piece) = pieces.next_if(|piece| stroke(piece) < event.before) {
+            time += piece_time(piece, path.weight);
+        }
+        Happening { time_s: time, line: event.line, what: event.what.to_string() }
+    };
+    job.events.iter().map(of).collect()
 }
 
 /// The step of the grid of the bound, in mm.
@@ -128,6 +162,12 @@ fn print(job: &Job, found: &Found) {
     println!("pieces              {:>12}    of {} of the path", found.planned_pieces, found.pieces);
     if let (Some(error), Some(budget)) = (found.contour_error, found.contour_error_budget) {
         println!("contour error       {error:>12.6} {unit}  of {budget} on the plant");
+    }
+    for Happening { time_s, line, what } in found.events.iter().take(SHOWN) {
+        println!("at {time_s:>12.3} s        line {line}: {what}");
+    }
+    if found.events.len() > SHOWN {
+        println!("                        and {} more; --json has them all", found.events.len() - SHOWN);
     }
     println!("limited by");
     for Share { reason, time_s } in &found.limited_by {

@@ -40,7 +40,8 @@ impl<'a> Slowness<'a> {
     }
 }
 
-fn piece_time(piece: &PathPiece, weight: f64) -> f64 {
+/// The same of one piece, at the weight w of its path.
+pub fn piece_time(piece: &PathPiece, weight: f64) -> f64 {
     if let Some(profile) = piece.profile {
         // The mean of a cubic is that of its Bernstein coefficients.
         return piece.way() / (piece.feed * 0.25 * profile.factors.iter().sum::<f64>());

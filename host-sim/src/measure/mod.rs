@@ -12,5 +12,5 @@ mod touching;
 
 pub use clearance::{Clearance, clearance, clearance_with};
 pub use foot_point::ContourError;
-pub use integral::{Slowness, exact_time};
+pub use integral::{Slowness, exact_time, piece_time};
 pub use nearest::{Foot, Nearest};
