@@ -148,8 +148,8 @@ fn a_tools_length_is_no_motion() {
         .iter()
         .flat_map(|piece| piece.interval.map(|xi| piece.z(xi).unwrap()))
         .collect();
-    for pair in heights[1..].chunks_exact(2) {
-        assert!((pair[0] - pair[1]).abs() < 1e-9, "{heights:?}");
+    for [end, start] in heights[1..].as_chunks::<2>().0 {
+        assert!((end - start).abs() < 1e-9, "{heights:?}");
     }
 }
 

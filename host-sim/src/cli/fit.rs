@@ -203,7 +203,7 @@ impl FitVerb {
             }
             if left > 0 {
                 eprintln!(
-                    "{name}: {left} events (spindle, coolant, tool, dwell, path mode) are not in it; add them by hand"
+                    "{name}: {left} events that the language has no words for here (tool length, cutting speed) are not in it; add them by hand"
                 );
             }
             target = Target::Nothing;
@@ -257,8 +257,9 @@ impl Target {
                         writer.motion(item.from, item.feed, &motion).map_err(|error| error.to_string())
                     }
                     Action::End => Ok(()),
-                    _ => {
-                        *left += 1;
+                    action => {
+                        let is_written = writer.event(&action).map_err(|error| error.to_string())?;
+                        *left += usize::from(!is_written);
                         Ok(())
                     }
                 },

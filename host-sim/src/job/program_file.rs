@@ -70,7 +70,8 @@ pub(super) fn of_strokes(name: &str, Strokes { strokes, events, .. }: Strokes) -
         return Err(InputError::new(name, "the program moves nothing, so there is nothing to run"));
     }
     let cut = |stroke: &Stroke| if let Pace::Feed(feed) = stroke.pace { Some(feed) } else { None };
-    let rate = strokes.iter().find_map(cut).unwrap_or_default();
+    // The largest one stands for all where one number is asked for.
+    let rate = strokes.iter().filter_map(cut).fold(0.0, f64::max);
     let feed = FeedWish { rate, weight: 0.0, reduction: Reduction::Fixed(1.0), ramp: 0.25 };
     let segments = strokes.iter().map(|stroke| stroke.segment).collect();
     let places = Places {

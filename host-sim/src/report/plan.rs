@@ -20,7 +20,7 @@ pub fn plan(job: &Job, path: &Path, plan: &Plan, limits: &Limits) -> Result<Stri
     let units = job.units;
     let mut page = Page::new(&format!("Plan of {}", job.name()), &lead(job, path, &limited));
     page.facts(&facts(units, &limited));
-    page.block(&limit_table(units, limits));
+    page.block(&limit_table(units, limits, path.pieces.iter().any(|piece| piece.height.is_some())));
     page.paragraph(&summary(&limited));
     page.heading("The feed, and what limits it");
     page.block("<div class=\"charts\">");
@@ -54,7 +54,7 @@ const OVER_TIME: &str = "The planned feed of the tool\u{2019}s centre over time,
     time that the limit takes. The thin line is the feed that the job asks for, \
     as far as the picture reaches. Dots are places that are slower than their surroundings, in the \
     colour of what limits them there; the slowest have a number.";
-const IN_THE_PLANE: &str = "The way of the tool\u{2019}s centre in the same colours, with the same dots and numbers. Dark is x and light is y.";
+const IN_THE_PLANE: &str = "The way of the tool\u{2019}s centre in the same colours, with the same dots and numbers. Dark is x, light is y, white is z.";
 
 fn lead(job: &Job, path: &Path, limited: &Limited) -> String {
     let unit = job.units.short();
@@ -90,7 +90,7 @@ fn limit(units: Units, value: f64) -> String {
     if value.is_finite() { three_figures(value / units.mm()) } else { "none".to_string() }
 }
 
-fn limit_table(units: Units, limits: &Limits) -> String {
+fn limit_table(units: Units, limits: &Limits, has_z: bool) -> String {
     let unit = units.short();
     let axis = |name: &str, number: usize| {
         let of = [limits.velocity, limits.acceleration, limits.jerk, limits.corner_step];
@@ -102,9 +102,10 @@ fn limit_table(units: Units, limits: &Limits) -> String {
     format!(
         "<div class=\"scroll\"><table class=\"plan limits\"><caption>Limits</caption><thead><tr><td></td><th scope=\"col\">velocity, \
          {unit}/s</th><th scope=\"col\">acceleration, {unit}/s\u{b2}</th><th scope=\"col\">jerk, {unit}/s\u{b3}</th><th scope=\"col\">step at \
-         a corner, {unit}/s</th></tr></thead><tbody>{}{}{path}</tbody></table></div>",
+         a corner, {unit}/s</th></tr></thead><tbody>{}{}{}{path}</tbody></table></div>",
         axis("x", 0),
-        axis("y", 1)
+        axis("y", 1),
+        if has_z { axis("z", 2) } else { String::new() }
     )
 }
 

@@ -28,9 +28,11 @@
 //! | module | what |
 //! | --- | --- |
 //! | `blocks` | blocks, words and digits |
+//! | `events` | spindle, coolant, tools, dwells, path modes |
 //! | `rs274`, `sinumerik` | curves in the words of each |
 
 mod blocks;
+mod events;
 mod rs274;
 mod sinumerik;
 #[cfg(test)]
