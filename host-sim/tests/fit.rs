@@ -71,6 +71,14 @@ fn a_program_is_a_job() {
     let two = file("job-two.ngc", "G21 F100\nG1 X10\nG0 X20\nG1 Y10\n");
     let length = found(&run("simulate", &two, &["--json", "-"]))["contact_length"].as_f64().unwrap();
     assert!((length - 30.0).abs() < 1e-6, "{length}");
+    // A machine that has no z is none for it.
+    let flat = concat!(env!("CARGO_MANIFEST_DIR"), "/../examples/mill-servos.toml");
+    let heart = file("job-heart.ngc", HEART);
+    for options in [&["--machine", flat][..], &["--machine", flat, "--plan"]] {
+        let output = run("simulate", &heart, options);
+        assert_eq!(output.status.code(), Some(2));
+        says("flat", &String::from_utf8(output.stderr).unwrap(), &["mill-servos.toml", "no third axis"]);
+    }
     let slow = file("job-slow.ngc", "G21\nG1 X10\n");
     let output = run("simulate", &slow, &[]);
     assert_eq!(output.status.code(), Some(2));
@@ -89,8 +97,9 @@ fn programs_are_read_back() {
         let options = ["--tolerance", "0.01", "--curve", curve, "-o", written.to_str().unwrap(), "--json", "-"];
         let output = run("fit", &program, &options);
         let fitted = found(&output);
-        // The spindle has no place in it, and that is said.
-        assert!(String::from_utf8_lossy(&output.stderr).contains("events"), "{name}");
+        // The spindle comes along.
+        let text = std::fs::read_to_string(&written).unwrap();
+        assert!(text.contains("M3 S12000") && text.contains("M5") && output.stderr.is_empty(), "{name}");
         let back = found(&run("fit", &written, &["--tolerance", "0.01", "--json", "-"]));
         let lines = back["lines"].as_u64().unwrap();
         assert!(lines <= 4 && back["other_motions"].as_u64().unwrap() > 2, "{name}: {back} of {fitted}");

@@ -7,7 +7,7 @@
 //! [`properties`] holds a trimmed offset against what must be true of it, [`expected`] against closed forms; [`winding`] and
 //! [`largest_disc`] serve these.
 //!
-//! For programs: [`nurbs`] measures B-splines.
+//! For programs: [`nurbs`] measures B-splines, [`canonical`] reads what LinuxCNC makes of a program.
 //!
 //! For the link: [`noisy_line`] loses, doubles, reorders, damages and cuts frames; [`link_script`] makes conversations of any bytes, and
 //! [`strict_machine`] stands behind the endpoint and trusts nothing that it is handed. The targets of `fuzz/` use both.
@@ -18,6 +18,7 @@
 #![forbid(unsafe_code)]
 
 pub mod bench;
+pub mod canonical;
 pub mod chain;
 pub mod contours;
 pub mod draft;

@@ -7,10 +7,11 @@ use std::path::PathBuf;
 
 use host_sim::compensation::{CentrePiece, Compensator, Options, Step, Summary, Tool, ToolTable, Trouble, Warning};
 use host_sim::program::rs274::{Settings, read};
-use host_sim::program::{Action, Arc, Item, Motion};
+use host_sim::program::{Action, Item};
 use host_sim::units::Units;
 use proptest::prelude::*;
 use shared::complex::Complex;
+use tests::canonical::Canonical;
 use tests::random::Random;
 
 /// What comes of a program.
@@ -24,50 +25,6 @@ struct Found {
     summary: Summary,
 }
 
-/// A motion as LinuxCNC's interpreter prints it: where it ends, and for an arc its centre and whether it turns left; inches.
-#[derive(Clone, Debug, PartialEq)]
-struct Canonical {
-    to: [f64; 3],
-    arc: Option<([f64; 2], bool)>,
-}
-
-impl Canonical {
-    fn of(motion: &Motion<'_>) -> Self {
-        let inch = |mm: f64| mm / 25.4;
-        let arc = if let Motion::Arc(Arc { centre, sweep, .. }) = motion {
-            Some((centre.map(inch), *sweep > 0.0))
-        } else {
-            None
-        };
-        Self { to: motion.to().unwrap().map(inch), arc }
-    }
-
-    /// Whether both are one but for `close` inches.
-    fn is(&self, other: &Self, close: f64) -> bool {
-        let near = |a: &[f64], b: &[f64]| a.iter().zip(b).all(|(a, b)| (a - b).abs() <= close);
-        near(&self.to, &other.to)
-            && match (self.arc, other.arc) {
-                (Some((a, left)), Some((b, other_left))) => left == other_left && near(&a, &b),
-                (None, None) => true,
-                _ => false,
-            }
-    }
-}
-
-/// The motion of a line of its output; none if it is something else.
-fn canonical(line: &str) -> Option<Canonical> {
-    let (name, rest) = line.split_once("..... ")?.1.split_once('(')?;
-    let values: Vec<f64> =
-        rest.trim_end().trim_end_matches(')').split(", ").map_while(|text| text.parse().ok()).collect();
-    match (name, &values[..]) {
-        ("STRAIGHT_TRAVERSE" | "STRAIGHT_FEED", &[x, y, z, ..]) => Some(Canonical { to: [x, y, z], arc: None }),
-        ("ARC_FEED", &[x, y, first, second, turns, z, ..]) => {
-            Some(Canonical { to: [x, y, z], arc: Some(([first, second], turns > 0.0)) })
-        }
-        _ => None,
-    }
-}
-
 /// Compensates a program; with its error, what came before it.
 fn compensated(name: &str, input: impl std::io::BufRead, tools: &ToolTable) -> (Found, Option<String>) {
     let mut found = Found::default();
@@ -75,7 +32,7 @@ fn compensated(name: &str, input: impl std::io::BufRead, tools: &ToolTable) -> (
     let mut sink = |step: Step<'_>| {
         match step {
             Step::Kept(Item { action: Action::Motion(motion), .. }) => {
-                found.motions.push(Canonical::of(motion));
+                found.motions.push(Canonical::of(motion).unwrap());
                 is_within = false;
             }
             Step::Kept(_) => {}
@@ -88,7 +45,7 @@ fn compensated(name: &str, input: impl std::io::BufRead, tools: &ToolTable) -> (
                 for piece in pieces {
                     let item = piece.item().unwrap();
                     let Action::Motion(motion) = item.action else { panic!("{item:?}") };
-                    found.motions.push(Canonical::of(&motion));
+                    found.motions.push(Canonical::of(&motion).unwrap());
                 }
             }
             Step::Warning(warning) => found.warnings.push(*warning),
@@ -141,7 +98,7 @@ fn motions_are_those_of_linuxcnc() {
     let Some((found, error)) = of_folder("lcnc_mill-line-arc-entry.ngc") else { return };
     let (folder, _) = folder().unwrap();
     let expected = std::fs::read_to_string(folder.join("lcnc_mill-line-arc-entry.expected")).unwrap();
-    let expected: Vec<Canonical> = expected.lines().filter_map(canonical).collect();
+    let expected: Vec<Canonical> = expected.lines().filter_map(Canonical::read).collect();
     assert_eq!((error, found.warnings.len(), found.runs.len()), (None, 0, 1));
     let apart: Vec<_> = found.motions.iter().zip(&expected).filter(|(a, b)| !a.is(b, PRINTED)).collect();
     assert!(found.motions.len() == expected.len() && apart.is_empty(), "{apart:#?}");

@@ -8,6 +8,7 @@ use std::path::Path;
 
 use host_sim::program::rs274::{Settings, read};
 use host_sim::program::{Action, Item, Motion};
+use tests::canonical::Canonical;
 use tests::nurbs;
 
 /// The counts are whole; lengths and ends were written with six decimals.
@@ -220,27 +221,6 @@ fn programs_of_others_are_read_whole() {
     }
 }
 
-/// A motion as LinuxCNC's interpreter prints it: where it ends, and for an arc its centre and whether it turns left.
-#[derive(Debug, PartialEq)]
-struct Canonical {
-    to: [f64; 3],
-    arc: Option<([f64; 2], bool)>,
-}
-
-/// The motion of a line of its output; none if it is something else.
-fn canonical(line: &str) -> Option<Canonical> {
-    let (name, rest) = line.split_once("..... ")?.1.split_once('(')?;
-    let values: Vec<f64> =
-        rest.trim_end().trim_end_matches(')').split(", ").map_while(|text| text.parse().ok()).collect();
-    match (name, &values[..]) {
-        ("STRAIGHT_TRAVERSE" | "STRAIGHT_FEED", &[x, y, z, ..]) => Some(Canonical { to: [x, y, z], arc: None }),
-        ("ARC_FEED", &[x, y, first, second, turns, z, ..]) => {
-            Some(Canonical { to: [x, y, z], arc: Some(([first, second], turns > 0.0)) })
-        }
-        _ => None,
-    }
-}
-
 /// LinuxCNC's own reading of a program, up to where it compensates for the tool, which is done elsewhere here. It prints
 /// inches with four decimals.
 #[test]
@@ -262,7 +242,7 @@ fn motions_are_those_that_linuxcnc_prints() {
         Ok(())
     });
     assert!(read.is_ok() && motions.len() == 11, "{motions:?}");
-    let expected: Vec<Canonical> = expected.lines().filter_map(canonical).take(motions.len()).collect();
+    let expected: Vec<Canonical> = expected.lines().filter_map(Canonical::read).take(motions.len()).collect();
     assert_eq!(motions, expected);
 }
 

@@ -7,7 +7,7 @@ use host_sim::path::Path;
 use shared::machine::MachineSettings;
 use shared::piece::Order;
 
-use super::planning::{Planned, Planning};
+use super::planning::{NO_Z, Planned, Planning};
 use super::tooling::Tools;
 
 /// A job and what the command line says of its motion.
@@ -107,13 +107,19 @@ impl Motion {
             return Err(InputError::new("--machine", "a plan needs the limits of a machine; name its file"));
         };
         let (machine, settings) = host_sim::machine::read_for_plan(name)?;
-        self.planning.plan(path, job, (name, &machine, &settings), plant)
+        let planning = super::spinner(&format!("planning {} pieces", path.pieces.len()));
+        let planned = self.planning.plan(path, job, (name, &machine, &settings), plant);
+        planning.finish_and_clear();
+        planned
     }
 
     /// Reads the job and makes its path, at the job's own feed.
     pub fn unplanned(&self) -> Result<(Job, Path), InputError> {
         let by = FeedOverride { rate: self.feed, weight: self.weight, reduction: self.reduction, ramp: self.ramp };
+        // A program of CAM may take seconds to read, fit and check.
+        let reading = super::spinner(&format!("reading {}", self.job));
         let job = Job::read_with(&self.job, &self.tools.read()?)?.with_feed(by)?.with_loop(self.chosen);
+        reading.finish_and_clear();
         for warning in &job.warnings {
             eprintln!("warning: {warning}");
         }
@@ -123,9 +129,15 @@ impl Motion {
             OrderName::Third => Order::Third,
             OrderName::Exact => Order::Exact,
         };
+        let checking = super::spinner("making its path");
         let path = self.pacing.apply(Path::new(&job, order)?, &job)?;
+        checking.finish_and_clear();
         if let Some(name) = &self.machine {
-            let machine = host_sim::machine::read(name)?.activate();
+            let machine = host_sim::machine::read(name)?;
+            if path.moves_z() && machine.axes.len() < 3 {
+                return Err(InputError::new(name, NO_Z));
+            }
+            let machine = machine.activate();
             let machine = machine.map_err(|error| InputError::new(name, error))?;
             let [x, y, z] = self.zero.map(|x| x * job.units.mm());
             path.check_travel(&job, &machine.soft_limits().seen_from([x, y], [z]))?;

@@ -44,6 +44,10 @@ enum Mode {
     ExactStop,
 }
 
+/// What is said of a machine that cannot run a program.
+pub const NO_Z: &str =
+    "the machine has no third axis, and the job moves z; take a machine with x, y and z, or a job in the plane";
+
 /// A planned path.
 pub struct Planned {
     /// With its profiles.
@@ -89,6 +93,7 @@ impl Planning {
             let (option, most, what) = match error {
                 PlanError::Start { most } => ("--start-feed", most, "begin"),
                 PlanError::End { most } => ("--end-feed", most, "end"),
+                PlanError::NoLimit => return InputError::new(name, NO_Z),
             };
             let (most, unit) = (most * 60.0 / mm, job.units.short());
             InputError::new(

@@ -79,6 +79,11 @@ impl Path {
         if loader.is_finished() { Ok(()) } else { Err((0, PathError::Empty)) }
     }
 
+    /// Whether z moves anywhere.
+    pub fn moves_z(&self) -> bool {
+        self.pieces.iter().any(|piece| piece.height.is_some_and(|height| !height.is_level()))
+    }
+
     /// Whether its pieces have their feed over time.
     pub fn is_planned(&self) -> bool {
         self.pieces.iter().any(|piece| piece.profile.is_some())

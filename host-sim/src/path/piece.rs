@@ -48,7 +48,12 @@ impl PathPiece {
     /// A part of the offset at `distance`, not slowed down anywhere. None where the contour has no such segment or node.
     pub(super) fn new(contour: &Contour, along: Along, distance: f64, feed: f64) -> Option<Self> {
         let (segment, interval, offset) = contour.carrier(along, distance)?;
-        Some(Self {
+        Some(Self::plain(along, segment, interval, offset, feed))
+    }
+
+    /// A part of a segment that nothing else is said of.
+    fn plain(along: Along, segment: Segment<f64>, interval: [f64; 2], offset: f64, feed: f64) -> Self {
+        Self {
             along,
             segment,
             interval,
@@ -63,7 +68,7 @@ impl PathPiece {
             start: None,
             end: None,
             profile: None,
-        })
+        }
     }
 
     /// A stroke of a program, the one of this number; `free` is the feed in mm/s where it has none of its own.
@@ -75,21 +80,12 @@ impl PathPiece {
         };
         // The way in space is longer than the one that the feed is along.
         let feed = feed / stroke.height.stretch();
+        let along = Along::Segment { segment: number, from, to };
         Self {
-            along: Along::Segment { segment: number, from, to },
-            segment: stroke.segment,
-            interval: stroke.interval,
-            offset: stroke.offset,
             entry: stroke.entry,
             is_rapid: stroke.pace == Pace::Rapid,
             height: Some(stroke.height),
-            feed,
-            wish: feed,
-            start_corner: None,
-            end_corner: None,
-            start: None,
-            end: None,
-            profile: None,
+            ..Self::plain(along, stroke.segment, stroke.interval, stroke.offset, feed)
         }
     }
 

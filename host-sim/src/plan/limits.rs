@@ -31,7 +31,8 @@ pub struct Limits {
 }
 
 impl Limits {
-    /// Of a machine. None where it has no two axes; a third one that it does not have has no limits.
+    /// Of a machine. None where it has no two axes; a third one that it does not have has no limits, and a path that moves it
+    /// cannot be planned.
     ///
     /// Where nobody says what an axis' velocity may step by at a corner, it is what its acceleration makes in [`JERK_WINDOW`].
     pub fn of(machine: &MachineSettings, path: &PathSettings) -> Option<Self> {
@@ -56,14 +57,18 @@ impl Limits {
 
     /// The same without those of z where no piece moves it, so that they say nothing of a plane path.
     pub(super) fn of_moving(&self, pieces: &[PathPiece]) -> Self {
-        let moves = |piece: &PathPiece| piece.height.is_some_and(|height| !height.is_level());
         let mut limits = *self;
-        if !pieces.iter().any(moves) {
+        if !moves_z(pieces) {
             for of_axes in [&mut limits.velocity, &mut limits.acceleration, &mut limits.jerk, &mut limits.corner_step] {
                 of_axes[2] = f64::INFINITY;
             }
         }
         limits
+    }
+
+    /// Whether a piece moves z, of which there are no limits.
+    pub(super) fn leave_open(&self, pieces: &[PathPiece]) -> bool {
+        (self.acceleration[2].is_infinite() || self.velocity[2].is_infinite()) && moves_z(pieces)
     }
 
     /// The same with every limit but the corner step times a factor.
@@ -77,4 +82,8 @@ impl Limits {
             centripetal: self.centripetal * acceleration,
         }
     }
+}
+
+fn moves_z(pieces: &[PathPiece]) -> bool {
+    pieces.iter().any(|piece| piece.height.is_some_and(|height| !height.is_level()))
 }

@@ -71,6 +71,8 @@ pub enum PlanError {
         /// The largest possible one, in mm/s.
         most: f64,
     },
+    /// It moves z, and the limits say nothing of z.
+    NoLimit,
     /// It cannot end at the speed that is asked for.
     End {
         /// The largest possible one, in mm/s.
@@ -100,6 +102,9 @@ pub fn planned(path: &Path, limits: &Limits, manner: &Manner) -> Result<(Path, P
 
 /// Plans pieces within limits. Errors: as [`planned`].
 pub fn plan(pieces: &[PathPiece], weight: f64, limits: &Limits, manner: &Manner) -> Result<Plan, PlanError> {
+    if limits.leave_open(pieces) {
+        return Err(PlanError::NoLimit);
+    }
     check_ends(best(pieces, weight, limits, manner), manner.ends)
 }
 

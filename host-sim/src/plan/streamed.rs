@@ -102,6 +102,9 @@ impl<I: Iterator<Item = PathPiece>> Streamed<I> {
 
     /// The plan of the window. Errors: an end of the path itself that cannot be as fast as it should.
     fn best(&self, manner: &Manner, is_last: bool) -> Result<Plan, PlanError> {
+        if self.limits.leave_open(&self.window) {
+            return Err(PlanError::NoLimit);
+        }
         let plan = best(&self.window, self.weight, &self.limits, manner);
         let first = self.is_first.then_some(self.manner.ends[0]).flatten();
         check_ends(plan, [first, self.manner.ends[1].filter(|_| is_last)])

@@ -95,6 +95,13 @@ fn lines_and_arcs() {
     }
 }
 
+/// A program: rapids, the way down, and the curves in the place of its lines.
+#[test]
+fn a_program_with_its_heights() {
+    let job = Job::read(root().join("examples/heart.ngc").to_str().unwrap()).unwrap();
+    assert!(compare(&job, Order::First, "heart") > 5_000);
+}
+
 /// The executor over pieces that no job has, all of them at hand from the start.
 fn on_host(header: &Header<f32>, pieces: &[Piece<f32>]) -> Host {
     let mut queue = Queue::new(header, pieces.iter().copied(), usize::MAX).unwrap();
