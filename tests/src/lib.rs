@@ -12,7 +12,8 @@
 //! For the link: [`noisy_line`] loses, doubles, reorders, damages and cuts frames; [`link_script`] makes conversations of any bytes, and
 //! [`strict_machine`] stands behind the endpoint and trusts nothing that it is handed. The targets of `fuzz/` use both.
 //!
-//! For programs: [`program_items`] is what the readers promise of any bytes; the targets of `fuzz/` use it too.
+//! For programs: [`program_items`] is what the readers promise of any bytes, and [`program_strokes`] what is promised behind them; the targets
+//! of `fuzz/` use both.
 //!
 //! For fits: [`two_sided`] measures curves beside the polylines that they stand for. [`stopwatch`] serves ratios of times.
 #![forbid(unsafe_code)]
@@ -29,6 +30,7 @@ pub mod noisy_line;
 pub mod nurbs;
 pub mod oracle;
 pub mod program_items;
+pub mod program_strokes;
 pub mod properties;
 pub mod random;
 pub mod run;

@@ -4,6 +4,8 @@
 //! other curves are halved until they are within [`TOLERANCE_MM`]. All parts of a curve have the derivatives by its own parameter in common, so
 //! that direction and curvature go on at their ends.
 
+use std::fmt;
+
 use super::bspline::{Clamped, NoCurve};
 use super::{Arc, Motion};
 use crate::vector::Vector;
@@ -20,14 +22,40 @@ const APART_MM: f64 = 1e-4;
 /// How often a curve is halved at the most.
 const HALVINGS: u32 = 12;
 
+/// The most quintics for one curve; no curve that is cut takes so many, and behind it they would no longer be near to it.
+const MOST: usize = 1024;
+
+/// Why a curve has no quintics.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NoQuintics {
+    /// It is no curve.
+    NoCurve(NoCurve),
+    /// It turns too often or too sharply.
+    TooMany,
+}
+
+impl fmt::Display for NoQuintics {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NoCurve(error) => error.fmt(f),
+            Self::TooMany => {
+                write!(
+                    f,
+                    "more than {MOST} quintics are needed to follow this curve; give it in parts, or with fewer turns"
+                )
+            }
+        }
+    }
+}
+
 /// Control points, in mm.
 pub type Quintic = [Vector; 6];
 
 /// Point, first and second derivative.
 pub type Jet = [Vector; 3];
 
-/// The quintics for a curve over 0..=1.
-pub fn quintics(curve: impl Fn(f64) -> Jet) -> Vec<Quintic> {
+/// The quintics for a curve over 0..=1. Errors: it needs too many.
+pub fn quintics(curve: impl Fn(f64) -> Jet) -> Result<Vec<Quintic>, NoQuintics> {
     /// Parts of 1 where the curve is compared; the difference is greatest near the middle.
     const LOOKS: [f64; 3] = [0.25, 0.5, 0.75];
     let mut found = Vec::new();
@@ -36,13 +64,16 @@ pub fn quintics(curve: impl Fn(f64) -> Jet) -> Vec<Quintic> {
         let quintic = hermite(curve(from), curve(to), to - from);
         let off = |part: f64| (point(&quintic, part) - curve(from + (to - from) * part)[0]).norm();
         if halvings == HALVINGS || LOOKS.into_iter().all(|part| off(part) <= TOLERANCE_MM) {
+            if found.len() == MOST {
+                return Err(NoQuintics::TooMany);
+            }
             found.push(quintic);
         } else {
             let middle = 0.5 * (from + to);
             open.extend([(middle, to, halvings + 1), (from, middle, halvings + 1)]);
         }
     }
-    found
+    Ok(found)
 }
 
 /// The quintic with these ends over a parameter interval of this width.
@@ -56,16 +87,21 @@ pub fn point(quintic: &Quintic, at: f64) -> Vector {
     casteljau(quintic.to_vec(), at)[0]
 }
 
-/// The quintics of a curve that a program or a drawing gives as such; none of a motion that is no such curve. Errors: it is none at all.
-pub fn drawn(from: [f64; 3], motion: &Motion<'_>) -> Result<Option<Vec<Quintic>>, NoCurve> {
+/// The quintics of a curve that a program or a drawing gives as such; none of a motion that is no such curve. Errors: it is none at all,
+/// or needs too many.
+pub fn drawn(from: [f64; 3], motion: &Motion<'_>) -> Result<Option<Vec<Quintic>>, NoQuintics> {
     Ok(match *motion {
         Motion::Bezier { points } => {
             let all: Vec<[f64; 4]> = [from].iter().chain(points).map(|&[x, y, z]| [x, y, z, 1.0]).collect();
-            Some(quintics(|at| rational(&all, at)))
+            Some(quintics(|at| rational(&all, at))?)
         }
         Motion::Nurbs(nurbs) => {
-            let curve = Clamped::new(&nurbs)?;
-            Some(curve.pieces().flat_map(|piece| quintics(|at| rational(&piece, at))).collect())
+            let curve = Clamped::new(&nurbs).map_err(NoQuintics::NoCurve)?;
+            let mut all = Vec::new();
+            for piece in curve.pieces() {
+                all.extend(quintics(|at| rational(&piece, at))?);
+            }
+            Some(all)
         }
         Motion::Rapid { .. } | Motion::Line { .. } | Motion::Arc(_) => None,
     })
@@ -171,7 +207,7 @@ mod tests {
                 arc(&spiral, [9.0, 0.0, 0.0], at)
             }];
         for (number, curve) in curves.into_iter().enumerate() {
-            let found = quintics(curve);
+            let found = quintics(curve).unwrap();
             let exact: Vec<Vector> = (0..=20_000).map(|k| curve(f64::from(k) / 2e4)[0]).collect();
             for quintic in &found {
                 for j in 0..=20 {
@@ -195,11 +231,22 @@ mod tests {
     #[test]
     fn polynomials_are_kept() {
         let points = [[0.0, 0.0, 0.0, 1.0], [3.0, 1.0, -2.0, 1.0], [5.0, -4.0, 1.0, 1.0], [9.0, 2.0, 0.0, 1.0]];
-        let found = quintics(|at| rational(&points, at));
+        let found = quintics(|at| rational(&points, at)).unwrap();
         assert_eq!(found.len(), 1);
         for k in 0..=10 {
             let at = f64::from(k) / 10.0;
             assert!((point(&found[0], at) - rational(&points, at)[0]).norm() < 1e-13);
         }
+    }
+    /// An upright thread of a hundred turns is followed; of ten thousand, no quintic would turn as often as it.
+    #[test]
+    fn what_needs_too_many_is_refused() {
+        let with = |turns: f64| {
+            let thread =
+                Arc { plane: Plane::Zx, centre: [0.0, 0.0], to: [1.0, 9.0, 0.0], sweep: TAU * turns, turns: 0 };
+            quintics(|at| arc(&thread, [1.0, 0.0, 0.0], at)).map(|found| found.len())
+        };
+        assert!(with(100.0).is_ok_and(|count| count > 200));
+        assert_eq!(with(1e4), Err(NoQuintics::TooMany));
     }
 }

@@ -13,7 +13,7 @@ use crate::fit::program::Step;
 use crate::fit::{Curve, Kind, fit};
 use crate::height::Height;
 use crate::program::item::PathMode;
-use crate::program::quintic::{self, Quintic, quintics};
+use crate::program::quintic::{self, Jet, Quintic, quintics};
 use crate::program::{Action, Arc, Feed, Item, Motion, Plane};
 use crate::vector::Vector;
 
@@ -68,10 +68,12 @@ impl Strokes {
             Step::Lines { points, feed, line } => {
                 let of = Of { feed: *feed, is_rapid: false, line: *line };
                 match self.rounding {
-                    Some(tolerance) => rounded(points, tolerance).iter().for_each(|part| self.rounded(part, of)),
-                    None => points.windows(2).for_each(|ends| self.line(ends[0], ends[1], of)),
+                    Some(tolerance) => rounded(points, tolerance).iter().try_for_each(|part| self.rounded(part, of)),
+                    None => {
+                        points.windows(2).for_each(|ends| self.line(ends[0], ends[1], of));
+                        Ok(())
+                    }
                 }
-                Ok(())
             }
             Step::Kept(item) => self.item(item),
         }
@@ -102,14 +104,17 @@ impl Strokes {
         }
     }
 
-    /// Takes a piece of the path of the tool's centre, from cutter compensation.
-    pub fn centre(&mut self, piece: &CentrePiece) {
+    /// Takes a piece of the path of the tool's centre, from cutter compensation. The error is a sentence.
+    pub fn centre(&mut self, piece: &CentrePiece) -> Result<(), String> {
         let of = Of { feed: piece.feed, is_rapid: piece.is_rapid, line: piece.place[0] };
         if piece.offset == 0.0 && piece.interval == [0.0, 1.0] {
             let [from, to] =
                 [(piece.start(), piece.z[0]), (piece.end(), piece.z[1])].map(|(p, z)| Vector([p.re, p.im, z]));
             match piece.segment {
-                Segment::Line(_) => return self.line(from, to, of),
+                Segment::Line(_) => {
+                    self.line(from, to, of);
+                    return Ok(());
+                }
                 Segment::Arc(arc) => {
                     let Complex { re, im } = arc.centre();
                     let arc = Arc { plane: Plane::Xy, centre: [re, im], to: to.0, sweep: arc.sweep, turns: 0 };
@@ -136,6 +141,7 @@ impl Strokes {
             Segment::Spline(curve) => curve.points = curve.points.map(|point| point + flat(shift)),
         }
         self.push_part(segment, piece.interval, piece.offset, height, of);
+        Ok(())
     }
 
     fn motion(&mut self, item: &Item<'_>, motion: &Motion<'_>) -> Result<(), String> {
@@ -146,10 +152,7 @@ impl Strokes {
                 self.line(from, Vector(to), of);
                 Ok(())
             }
-            Motion::Arc(arc) => {
-                self.arc(&arc, item.from, of);
-                Ok(())
-            }
+            Motion::Arc(arc) => self.arc(&arc, item.from, of),
             Motion::Bezier { .. } | Motion::Nurbs(_) => {
                 let parts = quintic::drawn(item.from, motion).map_err(|error| error.to_string())?;
                 self.drawn(&parts.unwrap_or_default(), of)
@@ -173,9 +176,9 @@ impl Strokes {
             Curve::Line(line) => self.line(line.points[0], line.points[1], of),
             Curve::Cubic(cubic) => {
                 let all = cubic.points.map(|Vector([x, y, z])| [x, y, z, 1.0]);
-                self.quintics(&quintics(|at| quintic::rational(&all, at)), of);
+                self.followed(|at| quintic::rational(&all, at), of)?;
             }
-            Curve::Arc(arc) => self.arc(&arc.motion(), arc.start.0, of),
+            Curve::Arc(arc) => self.arc(&arc.motion(), arc.start.0, of)?,
             Curve::Ph(ph) => {
                 let points = ph.bezier().points;
                 let [.., z] = points[0].0;
@@ -202,12 +205,12 @@ impl Strokes {
         self.push(segment, Height::between(&segment, [from.0[2], to.0[2]]), of);
     }
 
-    fn rounded(&mut self, part: &Rounded, of: Of) {
+    fn rounded(&mut self, part: &Rounded, of: Of) -> Result<(), String> {
         let Rounded::Arc { ends: [from, to], centre, angle } = *part else {
             if let Rounded::Line([from, to]) = *part {
                 self.line(from, to, of);
             }
-            return;
+            return Ok(());
         };
         let ([radius, end], is_level) = ([from - centre, to - centre], (from - to).0[2].abs() <= LEVEL);
         if is_level && (from - centre).0[2].abs() <= LEVEL {
@@ -222,14 +225,13 @@ impl Strokes {
             let spoke = radius * cosine + across * sine;
             [centre + spoke, (across * cosine - radius * sine) * angle, spoke * (-angle * angle)]
         };
-        self.quintics(&quintics(jet), of);
+        self.followed(jet, of)
     }
 
     /// Flat arcs and helices about z stay arcs, turn by turn; others become quintics.
-    fn arc(&mut self, arc: &Arc, from: [f64; 3], of: Of) {
+    fn arc(&mut self, arc: &Arc, from: [f64; 3], of: Of) -> Result<(), String> {
         let Some((radius, sweep)) = circle(arc, from) else {
-            self.quintics(&quintics(|at| quintic::arc(arc, from, at)), of);
-            return;
+            return self.followed(|at| quintic::arc(arc, from, at), of);
         };
         let shift = self.join(Vector(from), Vector(arc.to));
         let [x, y, z] = (Vector(from) + shift).0;
@@ -243,6 +245,12 @@ impl Strokes {
             let segment = Segment::Arc(Circle { start, radius: turned, sweep: sweep / count });
             self.push(segment, Height::between(&segment, [z + rise * at(k), z + rise * at(k + 1)]), of);
         }
+        Ok(())
+    }
+
+    fn followed(&mut self, curve: impl Fn(f64) -> Jet, of: Of) -> Result<(), String> {
+        self.quintics(&quintics(curve).map_err(|error| error.to_string())?, of);
+        Ok(())
     }
 
     fn quintics(&mut self, parts: &[Quintic], of: Of) {

@@ -11,7 +11,7 @@ use crate::program::output::Output;
 use crate::program::{Action, Arc, Feed, Motion, Plane};
 
 /// The most turns of one arc; no thread has so many.
-const MOST_TURNS: u32 = 100_000;
+const MOST_TURNS: u32 = 1_000;
 /// The highest order of a curve.
 const HIGHEST_ORDER: u32 = 16;
 

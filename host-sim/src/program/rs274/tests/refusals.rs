@@ -111,7 +111,7 @@ const TABLE: &[(&str, &str)] = &[
     ("f1 g2 x10 r1", "1:4: a radius of 1 cannot span the distance; 5 or more would do"),
     ("f1 g2 r1", "1:4: an arc by radius needs another end; give a full circle by its centre"),
     ("f1 g2 x0 r1", "1:4: an arc by radius needs another end; give a full circle by its centre"),
-    ("f1 g2 x2 i1 p0", "1:13: P must be a whole number from 1 to 100000"),
+    ("f1 g2 x2 i1 p0", "1:13: P must be a whole number from 1 to 1000"),
     ("f1 g53 g2 x2 i1", "1:8: G53 goes with G0 or G1 only"),
     ("g91 g53 g0 x2", "1:9: G53 needs absolute distances (G90)"),
     ("f1 g5.2 x1 y1\n  m3", "2:3: between G5.2 and G5.3 stand control points alone; put G5.3 before this"),
