@@ -254,7 +254,7 @@ fn runs(result: &Reproduction) -> String {
 fn claims(result: &Reproduction) -> String {
     let row = |claim: &crate::reproduce::spline_fit::Claim| {
         let verdict = if claim.holds { "" } else { ", not so" };
-        vec![claim.name.to_string(), claim.published.to_string(), format!("{}{verdict}", number(claim.measured, 3))]
+        vec![claim.name.to_string(), number(claim.published, 0), format!("{}{verdict}", number(claim.measured, 3))]
     };
-    table(&["ratio of", "published", "here"], result.rows.iter().map(row))
+    table(&["ratio of", "published: below", "here"], result.rows.iter().map(row))
 }

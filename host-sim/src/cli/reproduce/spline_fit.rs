@@ -18,9 +18,9 @@ pub fn print(result: &Reproduction) {
             run.fillet_least_feed
         );
     }
-    println!("\n{:70}{:>10}{:>9}", "what the paper found", "published", "here");
+    println!("\n{:70}{:>10}{:>9}", "what the paper found: ratio of", "below", "here");
     for row in &result.rows {
         let verdict = if row.holds { "" } else { "  NOT SO HERE" };
-        println!("{:70}{:>10}{:>9.3}{verdict}", row.name, row.published, row.measured);
+        println!("{:70}{:>10.1}{:>9.3}{verdict}", row.name, row.published, row.measured);
     }
 }
