@@ -42,7 +42,11 @@ fn the_example_becomes_a_contour_that_runs() {
     }
     assert!((length / lines - 1.0).abs() < 1e-3, "{length} {lines}");
     // The program itself is all of its motions, those in the air too.
-    let whole = found(&run("simulate", &program, &["--json", "-"]))["centre_length"].as_f64().unwrap();
+    let whole = found(&run("simulate", &program, &["--json", "-"]));
+    // The tick is on the path everywhere, where only z moves too.
+    assert!(whole["max_contour_error"].as_f64().unwrap() < 1e-4, "{whole}");
+    assert!(whole["rms_contour_error"].as_f64().unwrap() < 1e-4, "{whole}");
+    let whole = whole["centre_length"].as_f64().unwrap();
     let (mut at, mut motions) = ([0.0_f64; 3], 0.0);
     for line in HEART.lines().filter(|line| !line.starts_with('(')) {
         let mut next = at;

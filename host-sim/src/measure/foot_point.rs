@@ -82,7 +82,9 @@ fn foot_parameter(piece: &PathPiece, position: Complex<f64>, guess: f64) -> f64 
     match &piece.segment {
         Segment::Line(line) => {
             let along = line.end - line.start;
-            (along.dot(position - line.start) / along.norm_sqr()).clamp(first, last)
+            let square = along.norm_sqr();
+            // A line along which only z moves is one point, and what follows is at its end.
+            if square > 0.0 { (along.dot(position - line.start) / square).clamp(first, last) } else { last }
         }
         Segment::Arc(arc) => {
             let angle = (arc.radius.conj() * (position - arc.centre())).arg();
