@@ -28,7 +28,7 @@ pub enum PathError {
         /// What was given.
         length: f32,
     },
-    /// A ramp's factor f is outside 0 < f <= 1.
+    /// A ramp's factor f is outside 1e-12 <= f <= 1.
     Reduction {
         /// What was given.
         factor: f32,
@@ -129,7 +129,10 @@ impl fmt::Display for PathError {
             Self::Feed { feed } => write!(f, "the feed is {feed} mm/s; it must be a number above zero"),
             Self::RampLength { length } => write!(f, "a ramp takes {length} of its piece; it must be within 0..1"),
             Self::Reduction { factor } => {
-                write!(f, "the reduction is {factor}; it must be above 0 and at most 1, or the corner is never reached")
+                write!(
+                    f,
+                    "the reduction is {factor}; it must be at least 1e-12 and at most 1, or the corner is never reached"
+                )
             }
             Self::Ramps { sum } => {
                 write!(f, "the ramps of a piece cover {sum} of it; lambda at both ends may sum to at most 1")

@@ -20,6 +20,9 @@ pub struct Ramp<T> {
     pub factor: T,
 }
 
+/// The least factor of a ramp. Below some 1e-19 the rounding of u alone may turn F around, and no corner is ever reached anyway.
+const LEAST: f64 = 1e-12;
+
 /// A ramp that the tick may use: its values are in range, and a ramp of no length never acts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct ActiveRamp<T> {
@@ -37,7 +40,7 @@ impl<T: Real> ActiveRamp<T> {
         if !(length >= T::ZERO && length <= T::ONE) {
             return Err(PathError::RampLength { length: length.to_f32() });
         }
-        if !(factor > T::ZERO && factor <= T::ONE) {
+        if !(factor >= T::lit(LEAST) && factor <= T::ONE) {
             return Err(PathError::Reduction { factor: factor.to_f32() });
         }
         // Shorter than that, 1/lambda is no number any more, and no motion could show the ramp.
@@ -153,6 +156,8 @@ mod tests {
     fn what_would_not_move_is_refused() {
         let ramp = |length, factor| Some(Ramp { length, factor });
         assert_eq!(FeedLaw::activate(ramp(0.25_f32, 0.0), None), Err(PathError::Reduction { factor: 0.0 }));
+        assert_eq!(FeedLaw::activate(ramp(0.25_f32, 1e-13), None), Err(PathError::Reduction { factor: 1e-13 }));
+        assert!(FeedLaw::activate(ramp(0.25_f32, 1e-11), None).is_ok());
         assert_eq!(FeedLaw::activate(ramp(0.25_f32, 1.5), None), Err(PathError::Reduction { factor: 1.5 }));
         assert_eq!(FeedLaw::activate(None, ramp(1.5_f32, 1.0)), Err(PathError::RampLength { length: 1.5 }));
         assert_eq!(FeedLaw::activate(ramp(0.75_f32, 1.0), ramp(0.5, 1.0)), Err(PathError::Ramps { sum: 1.25 }));
