@@ -13,9 +13,9 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use criterion::{Criterion, Throughput, criterion_group};
-use host_sim::fit::vector::Vector;
 use host_sim::fit::{Kind, fit};
 use host_sim::program::{Action, Motion, rs274};
+use host_sim::vector::Vector;
 use kurbo::simplify::{SimplifyOptLevel, SimplifyOptions, simplify_bezpath};
 
 /// In mm.

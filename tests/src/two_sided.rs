@@ -1,7 +1,7 @@
 //! How far a fitted curve and its polyline are apart, by samples: nothing here is shared with the code that fits.
 
-use host_sim::fit::vector::Vector;
 use host_sim::fit::{Curve, Part};
+use host_sim::vector::Vector;
 
 /// Samples of each curve.
 const SAMPLES: usize = 48;

@@ -7,9 +7,9 @@ use std::io::BufReader;
 use std::path::Path;
 
 use host_sim::fit::joins::{Joins, break_between, joins};
-use host_sim::fit::vector::Vector;
 use host_sim::fit::{Curve, Kind, fit};
 use host_sim::program::{Action, Motion, rs274};
+use host_sim::vector::Vector;
 use kurbo::simplify::{SimplifyOptLevel, SimplifyOptions, simplify_bezpath};
 use tests::random::Random;
 use tests::two_sided::two_sided;

@@ -7,7 +7,6 @@ use clap::{Args, ValueEnum};
 use host_sim::compensation::{self, Compensator};
 use host_sim::fit::contour::{Chains, only};
 use host_sim::fit::program::{Fitter, Step, Summary};
-use host_sim::fit::vector::Vector;
 use host_sim::fit::{Curve, Fit, Kind};
 use host_sim::input::InputError;
 use host_sim::program::item::Nurbs;
@@ -15,6 +14,7 @@ use host_sim::program::write::{Dialect, Settings, WriteError, Writer};
 use host_sim::program::{self, Action, Feed, Item, Motion};
 use host_sim::report::{self, Fitted};
 use host_sim::units::Units;
+use host_sim::vector::Vector;
 use serde::Serialize;
 
 use super::Failure;

@@ -7,11 +7,12 @@ use shared::curve::{Arc, Curve as _, Line, Segment};
 
 use super::error::Fault;
 use crate::fit::curve::{Bezier, Cubic};
-use crate::fit::vector::Vector;
 use crate::fit::{Curve, Kind, fit};
-use crate::program::bspline::{Clamped, projected};
+use crate::program::bspline::Clamped;
 use crate::program::item::Nurbs;
+use crate::program::quintic::rational;
 use crate::program::{self, Plane};
+use crate::vector::Vector;
 
 /// Points that are nearer to each other than this are one, in mm: programs have four decimals, and this tells rounding from a motion.
 pub(super) const SAME: f64 = 1e-6;
@@ -106,7 +107,7 @@ fn quintics(pieces: &[Vec<[f64; 4]>], tolerance: f64) -> Result<Vec<Rising>, Fau
     let mut points: Vec<[f64; 3]> = Vec::new();
     for piece in pieces {
         let count = count(piece, CHORDS * tolerance);
-        points.extend((0..=count).map(|k| at(piece, k as f64 / count as f64)));
+        points.extend((0..=count).map(|k| rational(piece, k as f64 / count as f64)[0].0));
     }
     points.dedup_by(|b, a| (flat(*b) - flat(*a)).norm() <= SAME);
     let (Some(first), Some(last)) = (points.first().copied(), points.last().copied()) else { return Ok(Vec::new()) };
@@ -144,7 +145,7 @@ fn count(piece: &[[f64; 4]], tolerance: f64) -> usize {
     loop {
         let step = 1.0 / count as f64;
         let is_near = (0..count).all(|k| {
-            let [a, middle, b] = [0.0, 0.5, 1.0].map(|part| Vector(at(piece, step * (k as f64 + part))));
+            let [a, middle, b] = [0.0, 0.5, 1.0].map(|part| rational(piece, step * (k as f64 + part))[0]);
             middle.from_segment(a, b) <= tolerance
         });
         if is_near || count >= MOST {
@@ -152,17 +153,6 @@ fn count(piece: &[[f64; 4]], tolerance: f64) -> usize {
         }
         count *= 2;
     }
-}
-
-/// A point of a rational Bezier curve by the algorithm of de Casteljau.
-fn at(piece: &[[f64; 4]], t: f64) -> [f64; 3] {
-    let mut p = piece.to_vec();
-    for left in (1..p.len()).rev() {
-        for k in 0..left {
-            p[k] = std::array::from_fn(|i| p[k][i] * (1.0 - t) + p[k + 1][i] * t);
-        }
-    }
-    projected(p[0]).0
 }
 
 /// The parts of a segment before and behind a parameter.

@@ -4,8 +4,8 @@ use std::f64::consts::{PI, TAU};
 
 use super::conditions::{Course, SAG};
 use super::curve::Local;
-use super::vector::{Chord, Vector};
 use crate::program::{Arc, Plane};
+use crate::vector::{Chord, Vector};
 
 /// A part of a circle in x and y that rises or falls evenly, at most once around.
 #[derive(Clone, Copy, Debug, PartialEq)]

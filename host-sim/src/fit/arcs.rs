@@ -13,8 +13,8 @@ use super::curve::Bezier;
 use super::joins::break_between;
 use super::piecewise::{Run, by_runs, longest};
 use super::polyline::Polyline;
-use super::vector::Vector;
 use super::{Curve, Part};
+use crate::vector::Vector;
 
 /// The part of a way that a last stride may be.
 const FINE: usize = 32;

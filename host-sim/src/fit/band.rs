@@ -1,6 +1,6 @@
 //! Least squares of splines: every data point touches four neighbouring control points, so the normal equations are a band.
 
-use super::vector::Vector;
+use crate::vector::Vector;
 
 /// The half width of the band of a cubic spline, with the diagonal.
 const WIDTH: usize = 4;

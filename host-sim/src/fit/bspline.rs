@@ -8,7 +8,7 @@ use super::band::Band;
 use super::curve::{Cubic, Local};
 use super::polyline::Polyline;
 use super::spans::{LOOKS, Span, bernstein, parts, place};
-use super::vector::Vector;
+use crate::vector::Vector;
 
 /// A cubic spline over the way along a polyline.
 #[derive(Clone, Debug, PartialEq)]

@@ -18,8 +18,8 @@ use super::conditions::{Polynomial, across};
 use super::curve::Local;
 use super::ph::{self, Node, RisingPh, rise};
 use super::polyline::Polyline;
-use super::vector::Vector;
 use super::{Curve, Part};
+use crate::vector::Vector;
 
 type Plane = Complex<f64>;
 

@@ -11,7 +11,7 @@
 
 use super::curve::{Bezier, Local, Powers};
 use super::polyline::Polyline;
-use super::vector::{Chord, Vector};
+use crate::vector::{Chord, Vector};
 
 /// A curve that can be walked along, over 0..=1.
 pub(super) trait Course {

@@ -10,8 +10,8 @@ use shared::complex::Complex;
 use super::Curve;
 use super::curve::Bezier;
 use super::program::Step;
-use super::vector::Vector;
 use crate::program::{Action, Arc, Feed, Motion, Plane};
+use crate::vector::Vector;
 
 /// One contour.
 #[derive(Clone, Debug, PartialEq)]

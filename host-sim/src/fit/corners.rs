@@ -3,7 +3,7 @@
 //! An arc through three vertices in a row leaves its two chords by their sagittas. Where a sagitta is above the tolerance, no smooth curve
 //! through the vertices follows that segment: it is straight, and not the chord of anything. A vertex between two such segments is a corner.
 
-use super::vector::Vector;
+use crate::vector::Vector;
 
 /// What a polyline is at a vertex.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,6 +1,6 @@
 //! Polynomial curves by their Bernstein control points: lines of degree 1, cubics of degree 3, PH quintics of degree 5.
 
-use super::vector::{Chord, Vector};
+use crate::vector::{Chord, Vector};
 
 /// A curve over 0..=1 with N control points.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,8 +1,8 @@
 //! How smoothly the curves of a fit go on from one to the next, from the curves themselves.
 
 use super::curve::{Bezier, Local};
-use super::vector::Vector;
 use super::{Curve, Part};
+use crate::vector::Vector;
 
 /// The largest breaks where curves should go on smoothly.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

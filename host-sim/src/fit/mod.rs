@@ -5,7 +5,7 @@
 //!
 //! | module | what |
 //! | --- | --- |
-//! | [`vector`], [`curve`] | points and polynomial curves in space |
+//! | [`curve`] | polynomial curves in space |
 //! | `corners` | where a polyline is smooth, and what of it is straight (SA 3) |
 //! | `tangent`, `seam` | its tangent at a vertex; how a closed one goes on at its start |
 //! | `conditions` | both conditions on a curve (SA 1, SA 2), as an upper bound |
@@ -40,7 +40,7 @@ mod tangent;
 
 use std::ops::Range;
 
-pub use crate::vector;
+use crate::vector::{Chord, Vector};
 use arc::RisingArc;
 use bspline::Bspline;
 use corners::Vertex;
@@ -48,7 +48,6 @@ use curve::{Bezier, Cubic};
 use ph::RisingPh;
 use polyline::Polyline;
 use straights::{Straight, straights};
-use vector::{Chord, Vector};
 
 /// What is laid through a polyline.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

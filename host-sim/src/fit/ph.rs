@@ -14,8 +14,8 @@ use super::curve::{Bezier, Local};
 use super::joins::STRAIGHT;
 use super::piecewise::longest;
 use super::polyline::Polyline;
-use super::vector::Vector;
 use super::{Curve, Part};
+use crate::vector::Vector;
 
 /// The part of the tolerance that the B-spline takes.
 const SPLINE: f64 = 0.4;

@@ -8,8 +8,8 @@ use super::corners::{Vertex, vertices};
 use super::curve::{Bezier, Cubic};
 use super::polyline::Polyline;
 use super::tangent::tangent;
-use super::vector::Vector;
 use super::{Curve, Part};
+use crate::vector::Vector;
 
 /// How often handles and foot points are improved in turn.
 const ROUNDS: usize = 5;

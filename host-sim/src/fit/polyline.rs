@@ -1,6 +1,6 @@
 //! A polyline by the way along it.
 
-use super::vector::Vector;
+use crate::vector::Vector;
 
 /// Points, and the way to each of them.
 #[derive(Clone, Debug)]

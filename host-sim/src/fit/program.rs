@@ -6,11 +6,11 @@
 use serde::Serialize;
 
 use super::joins::joins;
-use super::vector::Vector;
 use super::{Fit, Kind, fit};
 use crate::program::item::PathMode;
 use crate::program::quintic;
 use crate::program::{Action, Feed, Item, Motion};
+use crate::vector::Vector;
 
 /// What a program comes to, one after the other.
 #[derive(Debug)]

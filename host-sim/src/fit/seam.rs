@@ -3,7 +3,7 @@
 use super::bspline;
 use super::corners::{Vertex, sagittas};
 use super::polyline::Polyline;
-use super::vector::Vector;
+use crate::vector::Vector;
 
 /// The most vertices on each side that are looked at.
 const MOST: usize = 96;

@@ -5,7 +5,7 @@ use super::band::Band;
 use super::conditions::{Polynomial, across};
 use super::curve::{Bezier, Cubic};
 use super::polyline::Polyline;
-use super::vector::Vector;
+use crate::vector::Vector;
 
 /// The places that a span is looked at in at least.
 pub(super) const LOOKS: usize = 6;

@@ -8,7 +8,7 @@
 use std::ops::Range;
 
 use super::corners::sagittas;
-use super::vector::Vector;
+use crate::vector::Vector;
 
 /// Half of the way over which a bend begins, in parts of sqrt(R tolerance); the other half lies on the bend.
 const LEAD: f64 = 3.0;

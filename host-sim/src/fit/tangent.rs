@@ -4,7 +4,7 @@
 //! finite difference of the paper. More of them, where they lie on a curve, average out what a program's digits have rounded away.
 
 use super::polyline::Polyline;
-use super::vector::Vector;
+use crate::vector::Vector;
 
 /// The most neighbours on one side.
 const MOST: usize = 32;

@@ -81,7 +81,7 @@ impl Path {
 
     /// Whether z moves anywhere.
     pub fn moves_z(&self) -> bool {
-        self.pieces.iter().any(|piece| piece.height.is_some_and(|height| !height.is_level()))
+        self.pieces.iter().any(PathPiece::moves_z)
     }
 
     /// Whether its pieces have their feed over time.

@@ -98,6 +98,11 @@ impl PathPiece {
         Self { along, interval: [from, to], ..*self }
     }
 
+    /// Whether z moves along it.
+    pub fn moves_z(&self) -> bool {
+        self.height.is_some_and(|height| !height.is_level())
+    }
+
     /// Whether the contact point rests here.
     pub fn is_fill(&self) -> bool {
         matches!(self.along, Along::Fill { .. })

@@ -58,7 +58,7 @@ impl Limits {
     /// The same without those of z where no piece moves it, so that they say nothing of a plane path.
     pub(super) fn of_moving(&self, pieces: &[PathPiece]) -> Self {
         let mut limits = *self;
-        if !moves_z(pieces) {
+        if !pieces.iter().any(PathPiece::moves_z) {
             for of_axes in [&mut limits.velocity, &mut limits.acceleration, &mut limits.jerk, &mut limits.corner_step] {
                 of_axes[2] = f64::INFINITY;
             }
@@ -68,7 +68,7 @@ impl Limits {
 
     /// Whether a piece moves z, of which there are no limits.
     pub(super) fn leave_open(&self, pieces: &[PathPiece]) -> bool {
-        (self.acceleration[2].is_infinite() || self.velocity[2].is_infinite()) && moves_z(pieces)
+        (self.acceleration[2].is_infinite() || self.velocity[2].is_infinite()) && pieces.iter().any(PathPiece::moves_z)
     }
 
     /// The same with every limit but the corner step times a factor.
@@ -82,8 +82,4 @@ impl Limits {
             centripetal: self.centripetal * acceleration,
         }
     }
-}
-
-fn moves_z(pieces: &[PathPiece]) -> bool {
-    pieces.iter().any(|piece| piece.height.is_some_and(|height| !height.is_level()))
 }

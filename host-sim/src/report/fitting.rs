@@ -7,7 +7,7 @@ use super::canvas::{Anchor, Canvas, Picture, Stroke};
 use super::series::{Point, number};
 use super::style::{FRAME, INK, MAIN, OTHER, PAPER, SOFT, WIDTH};
 use crate::fit::Curve;
-use crate::fit::vector::Vector;
+use crate::vector::Vector;
 
 /// What there is to be drawn.
 #[derive(Clone, Debug, Default)]

@@ -101,6 +101,28 @@ pub fn escape(text: &str) -> String {
     out
 }
 
+/// A table whose first `words` columns and, where there is a last one with reasons, that one hold words; the others hold numbers.
+pub fn table(
+    head: &[&str],
+    words: usize,
+    reasons: bool,
+    rows: impl Iterator<Item = (&'static str, Vec<String>)>,
+) -> String {
+    let last = head.len() - 1;
+    let cell = |tag: &str, (column, text): (usize, &str)| {
+        let is_word = column < words || (reasons && column == last);
+        let style = if is_word { " style=\"text-align: left; white-space: normal\"" } else { "" };
+        format!("<{tag}{style}>{}</{tag}>", escape(text))
+    };
+    let head: String = head.iter().copied().enumerate().map(|named| cell("th", named)).collect();
+    let row = |(style, row): (&str, Vec<String>)| {
+        let cells: String = row.iter().map(String::as_str).enumerate().map(|text| cell("td", text)).collect();
+        format!("<tr style=\"{style}\">{cells}</tr>")
+    };
+    let body: String = rows.map(row).collect();
+    format!("<div class=\"scroll\"><table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table></div>")
+}
+
 #[cfg(test)]
 pub(super) mod tests {
     use super::*;

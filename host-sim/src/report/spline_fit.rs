@@ -6,7 +6,7 @@ use super::ReportError;
 use super::canvas::{Anchor, Mark, Picture, Stroke};
 use super::chart::{COLUMNS, Strip, TimeChart, Trace};
 use super::geometry::Place;
-use super::page::{Layout, Page, escape};
+use super::page::{Layout, Page, table};
 use super::plane::View;
 use super::series::{Point, decimate, number, three_figures};
 use super::style::{FRAME, GRID, MAIN, OTHER, SOFT, WIDTH};
@@ -211,20 +211,6 @@ fn whole(runs: &[&Run]) -> Result<Picture, ReportError> {
     .draw()
 }
 
-fn table(head: &[&str], rows: impl Iterator<Item = Vec<String>>) -> String {
-    let cell = |tag: &str, (column, text): (usize, &str)| {
-        let style = if column == 0 { " style=\"text-align: left; white-space: normal\"" } else { "" };
-        format!("<{tag}{style}>{}</{tag}>", escape(text))
-    };
-    let head: String = head.iter().copied().enumerate().map(|named| cell("th", named)).collect();
-    let row = |row: Vec<String>| {
-        let cells: String = row.iter().map(String::as_str).enumerate().map(|text| cell("td", text)).collect();
-        format!("<tr>{cells}</tr>")
-    };
-    let body: String = rows.map(row).collect();
-    format!("<div class=\"scroll\"><table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table></div>")
-}
-
 fn runs(result: &Reproduction) -> String {
     let head = [
         "",
@@ -237,7 +223,7 @@ fn runs(result: &Reproduction) -> String {
         "least feed at the fillet, mm/s",
     ];
     let row = |run: &Run| {
-        vec![
+        let cells = vec![
             run.name.to_string(),
             run.strokes.to_string(),
             number(run.time_s, 3),
@@ -246,15 +232,17 @@ fn runs(result: &Reproduction) -> String {
             run.curvature_jumps.to_string(),
             run.smooth.to_string(),
             number(run.fillet_least_feed, 1),
-        ]
+        ];
+        ("", cells)
     };
-    table(&head, result.runs.iter().map(row))
+    table(&head, 1, false, result.runs.iter().map(row))
 }
 
 fn claims(result: &Reproduction) -> String {
     let row = |claim: &crate::reproduce::spline_fit::Claim| {
         let verdict = if claim.holds { "" } else { ", not so" };
-        vec![claim.name.to_string(), number(claim.published, 0), format!("{}{verdict}", number(claim.measured, 3))]
+        let measured = format!("{}{verdict}", number(claim.measured, 3));
+        ("", vec![claim.name.to_string(), number(claim.published, 0), measured])
     };
-    table(&["ratio of", "published: below", "here"], result.rows.iter().map(row))
+    table(&["ratio of", "published: below", "here"], 1, false, result.rows.iter().map(row))
 }

@@ -79,8 +79,7 @@ impl Strokes {
         }
     }
 
-    /// Takes an item as it is, lines too. The error is a sentence.
-    pub fn item(&mut self, item: &Item<'_>) -> Result<(), String> {
+    fn item(&mut self, item: &Item<'_>) -> Result<(), String> {
         match &item.action {
             Action::Motion(motion) => self.motion(item, motion),
             Action::Further { axis, .. } => {
